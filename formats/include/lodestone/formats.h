@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Files in and out. The kind of a file is told by its content, else by its name.
+///
+/// Readers tolerate what real files get wrong (missing textures, wrong case in names, negative indices, n-gons with holes,
+/// duplicate and degenerate faces, NaN) and list it as warnings, or refuse with file and place. They never crash, hang or
+/// grow without bound on any bytes: counts and sizes are capped (ReadOptions) and checked after decoding.
+/// Writers write beside the target and rename, so a failed or cancelled call leaves the old file as it was.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <lodestone/context.h>
+#include <lodestone/image.h>
+#include <lodestone/mesh.h>
+#include <lodestone/progressive_model.h>
+#include <lodestone/result.h>
+
+namespace lodestone {
+
+/// Which way is up in the file; everything is turned to Z up on reading.
+enum class UpAxis : std::uint8_t { FromFile, Y, Z };
+
+enum class LoadTextures : std::uint8_t {
+  Reference,  ///< paths only
+  Encoded,    ///< the files' bytes
+  Decoded,    ///< pixels too
+};
+
+struct ReadOptions {
+  UpAxis up = UpAxis::FromFile;  ///< FromFile: the format's rule (glTF Y, CityGML Z), OBJ and PLY Z unless stated
+  double unit_m = 0.0;           ///< metres per file unit; 0 = the format's rule, else 1
+  LoadTextures textures = LoadTextures::Encoded;
+  /// Caps. Beyond them a file is refused (TooLarge) instead of filling the memory.
+  std::uint64_t max_vertices = 400'000'000;
+  std::uint64_t max_triangles = 400'000'000;
+  std::uint64_t max_file_bytes = 64ULL << 30;
+  std::uint64_t max_texture_pixels = 1ULL << 28;
+};
+
+/// What a reader learned besides the mesh.
+struct SourceInfo {
+  std::string format;   ///< "obj", "ply", "gltf", "3ds", "cityjson", "citygml", "lode", or assimp's name
+  std::string up_axis;  ///< "Y" or "Z": as it was in the file
+  double unit_m = 1.0;  ///< metres per unit of the file
+};
+
+struct LoadedMesh {
+  Mesh mesh;
+  SourceInfo info;
+};
+
+/// Reads OBJ+MTL, PLY, glTF 2.0 / GLB, 3DS, CityJSON 1.1 and 2.0, CityGML 2.0, and what else assimp reads (IFC, DAE,
+/// FBX, STL, ...). A .lode file gives its finest level.
+[[nodiscard]] Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOptions& options = {},
+                                           const Context& context = {});
+
+/// Writes OBJ+MTL, PLY or GLB by the name's extension. Textures go beside an OBJ or PLY, inside a GLB.
+/// World coordinates are kept: OBJ and PLY get them in full; GLB carries the origin as a node translation.
+[[nodiscard]] Status write_mesh(const Mesh& mesh, const std::filesystem::path& file, const Context& context = {});
+
+struct ModelWriteOptions {
+  /// Bits per coordinate of the model's box; 0 = lossless.
+  std::uint32_t quantize_bits = 0;
+  /// Put textures into the file (else refer to them by path).
+  bool embed_textures = true;
+};
+
+struct ModelReadOptions {
+  /// Use only the first so many bytes: the coarse part of the model; 0 = all.
+  std::uint64_t max_bytes = 0;
+};
+
+/// .lode files: docs/FILE_FORMAT.md. Any prefix of a file that holds the base is a usable, coarser model.
+[[nodiscard]] Result<std::uint64_t> write_model(const ProgressiveModel& model, const std::filesystem::path& file,
+                                                const ModelWriteOptions& options = {}, const Context& context = {});
+[[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> read_model(const std::filesystem::path& file,
+                                                                         const ModelReadOptions& options = {},
+                                                                         const Context& context = {});
+
+/// True if the file begins like a .lode file.
+[[nodiscard]] bool is_model_file(const std::filesystem::path& file);
+
+/// JPEG, PNG, WebP, and what stb reads (BMP, TGA, GIF), told by content. `source` is named in errors.
+[[nodiscard]] Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& source,
+                                         std::uint64_t max_pixels = 1ULL << 28);
+[[nodiscard]] Result<Image> read_image(const std::filesystem::path& file);
+/// PNG, JPEG or WebP by the name's extension; `quality` 1..100 for the latter two.
+[[nodiscard]] Status write_image(const Image& image, const std::filesystem::path& file, int quality = 90);
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality = 90);
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_png(const Image& image);
+
+}  // namespace lodestone

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// What a producer (collapse/build, facets) hands over: slot edits in coarsening order, in the numbering of the source
+// mesh. The recorder sorts slots by removal time and turns the log into a ProgressiveModel's stack.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/progressive_model.h>
+
+namespace lodestone::progressive {
+
+// A flat log of slot edits. One record: begin(), then any mix of the four verbs, then end(). Rules, asserted by record():
+//   - a face or vertex is removed once and not mentioned afterwards;
+//   - after end(), no remaining face names a removed vertex;
+//   - errors may come in any order: record() makes them monotone by running maximum.
+// Cost: 16 bytes a record + 4 per removed face + 8 per removed vertex or re-pointed corner + 4 + 4 * value_words per move.
+class EditLog {
+ public:
+  // `value_words` as ModelData::value_words() of the source's arrays.
+  explicit EditLog(std::uint32_t value_words) : value_words_(value_words) {}
+
+  void begin(float error_m);
+  void remove_face(FaceId face);
+  // `merges_into`: the vertex it lies upon when it goes, which remains (where a geomorph takes it).
+  void remove_vertex(VertexId vertex, VertexId merges_into);
+  void repoint(CornerId corner, VertexId to);
+  // `words`: value_words() 32-bit words of the new value, in the order position, normal, uv, colour.
+  void move_vertex(VertexId vertex, std::span<const std::uint32_t> words);
+  void end();
+
+  [[nodiscard]] std::uint32_t record_count() const noexcept { return static_cast<std::uint32_t>(records_.size()); }
+
+ private:
+  friend class Recorder;
+  struct Record {
+    float error_m;
+    std::uint32_t faces_end, vertices_end, corners_end, moves_end;  // ends in the arrays below
+  };
+  struct RemovedVertex {
+    VertexId vertex, merges_into;
+  };
+  struct Repointed {
+    CornerId corner;
+    VertexId to;
+  };
+  std::uint32_t value_words_;
+  std::vector<Record> records_;
+  std::vector<FaceId> faces_;
+  std::vector<RemovedVertex> vertices_;
+  std::vector<Repointed> corners_;
+  std::vector<VertexId> moved_;
+  std::vector<std::uint32_t> values_;
+};
+
+// Sorts slots, encodes fans and edits, quantises errors to steps (rounded up, at most 0.2 % apart) and returns the
+// data of a model whose finest level is `source`, face for face. O(log + mesh).
+[[nodiscard]] ModelData record(const Mesh& source, EditLog&& log, std::string method);
+
+}  // namespace lodestone::progressive
