@@ -2,10 +2,10 @@
 /// \file
 /// Files in and out. The kind of a file is told by its content, else by its name.
 ///
-/// Readers tolerate what real files get wrong (missing textures, wrong case in names, negative indices, n-gons with holes,
-/// duplicate and degenerate faces, NaN) and list it as warnings, or refuse with file and place. They never crash, hang or
-/// grow without bound on any bytes: counts and sizes are capped (ReadOptions) and checked after decoding.
-/// Writers write beside the target and rename, so a failed or cancelled call leaves the old file as it was.
+/// Readers tolerate what real files get wrong (missing textures, wrong case in names, negative indices, n-gons with
+/// holes, duplicate and degenerate faces, NaN) and list it as warnings, or refuse with file and place. They never
+/// crash, hang or grow without bound on any bytes: counts and sizes are capped (ReadOptions) and checked after
+/// decoding. Writers write beside the target and rename, so a failed or cancelled call leaves the old file as it was.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <lodestone/context.h>
 #include <lodestone/image.h>
@@ -85,7 +86,8 @@ struct ModelReadOptions {
 /// True if the file begins like a .lode file.
 [[nodiscard]] bool is_model_file(const std::filesystem::path& file);
 
-/// JPEG, PNG, WebP, and what stb reads (BMP, TGA, GIF), told by content. `source` is named in errors.
+/// JPEG, PNG, WebP, and what stb reads (BMP, GIF, and TGA by its name), told by content. EXIF orientation is
+/// applied, CMYK turned to RGB, 16 bits cut to 8. `source` is named in errors.
 [[nodiscard]] Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& source,
                                          std::uint64_t max_pixels = 1ULL << 28);
 [[nodiscard]] Result<Image> read_image(const std::filesystem::path& file);
@@ -93,5 +95,31 @@ struct ModelReadOptions {
 [[nodiscard]] Status write_image(const Image& image, const std::filesystem::path& file, int quality = 90);
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality = 90);
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_png(const Image& image);
+[[nodiscard]] Result<std::vector<std::uint8_t>> encode_webp(const Image& image, int quality = 90);
+
+/// Writes an animated GIF that loops for ever, frame by frame, so that a long film needs the memory of one frame.
+/// Every frame has the size of the first; each gets its own 255 colours. Nothing is left behind unless finish()
+/// succeeds.
+///
+///     auto film = lodestone::GifWriter::create("sweep.gif", 1.0 / 25.0);
+///     for (...) film->add(frame);
+///     film->finish();
+class GifWriter {
+ public:
+  /// `frame_s`: how long a frame is shown, in seconds; GIF rounds it to hundredths, viewers show at most 50 a second.
+  [[nodiscard]] static Result<GifWriter> create(const std::filesystem::path& file, double frame_s);
+  GifWriter(GifWriter&&) noexcept;
+  GifWriter& operator=(GifWriter&&) noexcept;
+  ~GifWriter();
+  [[nodiscard]] Status add(const Image& frame);
+  [[nodiscard]] Status finish();
+
+ private:
+  struct State;
+  explicit GifWriter(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+/// All frames at once.
+[[nodiscard]] Status write_gif(std::span<const Image> frames, const std::filesystem::path& file, double frame_s);
 
 }  // namespace lodestone
