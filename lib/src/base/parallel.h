@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// oneTBB behind a Context: at most Context::max_workers threads, stops soon after Context::cancel is raised.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include <lodestone/context.h>
+
+namespace lodestone {
+
+// Number of threads that parallel_chunks() will use.
+[[nodiscard]] inline int worker_count(const Context& context) {
+  const int cores = tbb::this_task_arena::max_concurrency();
+  return context.max_workers == 0 ? cores : static_cast<int>(context.max_workers);
+}
+
+// Calls work(begin, end) for consecutive chunks of [0, count), each of `chunk` elements but the last. Chunks do not
+// depend on the number of threads, so a reduction over their results in order gives the same bits always. Chunks not
+// yet begun are left out when the context is cancelled: ask context.cancelled() afterwards.
+template <class Work>
+void parallel_chunks(std::size_t count, std::size_t chunk, const Context& context, Work work) {
+  const std::size_t chunks = (count + chunk - 1) / chunk;
+  const auto run = [&](std::size_t i) {
+    if (!context.cancelled()) work(i * chunk, std::min(count, (i + 1) * chunk));
+  };
+  const int workers = worker_count(context);
+  if (workers == 1 || chunks <= 1) {
+    for (std::size_t i = 0; i < chunks; ++i) run(i);
+    return;
+  }
+  tbb::task_arena arena{workers};
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>{0, chunks, 1}, [&](const tbb::blocked_range<std::size_t>& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) run(i);
+    });
+  });
+}
+
+// Calls work(i) for each i in [0, count), `chunk` of them at a time on one thread.
+template <class Work>
+void parallel_for_each(std::size_t count, std::size_t chunk, const Context& context, Work work) {
+  parallel_chunks(count, chunk, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) work(i);
+  });
+}
+
+}  // namespace lodestone
