@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// One pair of functions per image library; images.cpp chooses among them. Decoders give pixels as they are meant to be
+// seen, or an Error without a place: the caller knows the file's name.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/image.h>
+#include <lodestone/result.h>
+
+namespace lodestone {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
+
+[[nodiscard]] Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels);
+[[nodiscard]] Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels);
+[[nodiscard]] Result<Image> decode_webp(ByteSpan bytes, std::uint64_t max_pixels);
+[[nodiscard]] Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels);
+
+// Nothing if the size is fine; else TooLarge or, for an empty image, BadData.
+[[nodiscard]] Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t max_pixels);
+
+// The same picture with 3 or 4 channels.
+[[nodiscard]] Image widened_to_rgb(const Image& image);
+
+// EXIF orientation 1..8 undone, so that the first row is the top one.
+[[nodiscard]] Image upright(Image image, int exif_orientation);
+
+}  // namespace lodestone
