@@ -33,22 +33,22 @@ namespace lodestone {
 /// Where a cursor should go. The model turns it into a level.
 class Target {
  public:
-  [[nodiscard]] static Target level(Level level) noexcept { return {Kind::Level, static_cast<double>(level)}; }
+  [[nodiscard]] static Target level(Level level) noexcept { return {Kind::ByLevel, static_cast<double>(level)}; }
   /// At most so many triangles.
   [[nodiscard]] static Target triangles(std::uint32_t count) noexcept {
-    return {Kind::Triangles, static_cast<double>(count)};
+    return {Kind::ByTriangles, static_cast<double>(count)};
   }
   /// At most this share of the source's triangles, 0..1.
-  [[nodiscard]] static Target ratio(double ratio) noexcept { return {Kind::Ratio, ratio}; }
+  [[nodiscard]] static Target ratio(double ratio) noexcept { return {Kind::ByRatio, ratio}; }
   /// The coarsest level that deviates by at most so many metres.
-  [[nodiscard]] static Target error_m(double error_m) noexcept { return {Kind::Error, error_m}; }
+  [[nodiscard]] static Target error_m(double error_m) noexcept { return {Kind::ByError, error_m}; }
   /// The coarsest level that deviates by at most `max_error_px` on the screen. With hysteresis: the target stays while
   /// the error of the present target lies within [1 - h, 1 + h] times the limit, so a camera that rests does not flicker.
   [[nodiscard]] static Target pixels(const View& view, double max_error_px, double hysteresis = 0.15) noexcept;
 
  private:
   friend class Cursor;
-  enum class Kind { Level, Triangles, Ratio, Error, Pixels };
+  enum class Kind : std::uint8_t { ByLevel, ByTriangles, ByRatio, ByError, ByPixels };
   Target(Kind kind, double value) noexcept : kind_(kind), value_(value) {}
   Kind kind_;
   double value_;
