@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "session.h"
+
+#include <sys/resource.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "version.h"
+
+namespace lodestone::cli {
+namespace {
+
+const auto program_start = std::chrono::steady_clock::now();
+std::atomic<bool> cancel_requested{false};
+
+extern "C" void on_signal(int) { cancel_requested.store(true, std::memory_order_relaxed); }
+
+double seconds_since_start() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - program_start).count();
+}
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// Memory beyond the limit is refused by the system, and the program ends with one line instead of swapping.
+void limit_memory(std::uint64_t bytes) {
+  if (bytes == 0) return;
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+void print_line(const std::string& line) { std::fprintf(stderr, "lodestone: %s\n", line.c_str()); }
+
+}  // namespace
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  ::sigemptyset(&action.sa_mask);
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+  // A reader that went away shows as a failed write, which is reported like a full disk.
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+Session::Session(const Common& common)
+    : common_(common), bar_(common.quiet ? ProgressBar::Show::Never : ProgressBar::Show::OnTerminal) {
+  limit_memory(common.max_memory_bytes);
+  context_.cancel = &cancel_requested;
+  context_.max_workers = common.threads;
+  context_.max_memory_bytes = common.max_memory_bytes;
+  context_.progress = [this](std::string_view stage, double fraction) { bar_.update(stage, fraction); };
+  report_.set("lodestone", version);
+}
+
+void Session::keep(std::vector<Warning> warnings) {
+  bar_.clear();
+  for (Warning& warning : warnings) {
+    if (!common_.quiet) print_line("warning: " + to_line(warning));
+    warnings_.push_back(std::move(warning));
+  }
+}
+
+void Session::remark(const std::string& line) {
+  bar_.clear();
+  if (!common_.quiet) print_line(line);
+}
+
+int Session::finish(const Status& status) {
+  keep(status.warnings());
+  bar_.clear();
+  int code = exit_code::done;
+  if (!status) {
+    code = to_exit_code(status.error().code);
+    report_.set_error(status.error());
+    print_line(to_line(status.error()));
+  } else if (common_.strict && !warnings_.empty()) {
+    code = exit_code::warnings;
+  }
+  report_.set("seconds", seconds_since_start());
+  report_.set("peak_rss_bytes", peak_rss_bytes());
+  report_.set_warnings(warnings_);
+  const std::string text = common_.json ? report_.to_json() + "\n" : (status ? report_.to_lines() : "");
+  const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  if (!written) {
+    print_line("standard output: the report could not be written, check the disk or the pipe");
+    return exit_code::bad_data;
+  }
+  return code;
+}
+
+int to_exit_code(ErrorCode code) noexcept {
+  switch (code) {
+    case ErrorCode::BadArgument:
+      return exit_code::wrong_arguments;
+    case ErrorCode::Cancelled:
+      return exit_code::cancelled;
+    case ErrorCode::NotFound:
+    case ErrorCode::Unreadable:
+    case ErrorCode::BadData:
+    case ErrorCode::Unsupported:
+    case ErrorCode::TooLarge:
+      break;
+  }
+  return exit_code::bad_data;
+}
+
+}  // namespace lodestone::cli
