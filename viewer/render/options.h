@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// How a picture looks. Shared by the window and the headless renderer.
+#pragma once
+
+#include <cstdint>
+
+namespace lodestone::render {
+
+enum class Background : std::uint8_t {
+  Gradient,  ///< light grey, a little darker below
+  White,
+};
+
+enum class Coloring : std::uint8_t {
+  Materials,   ///< base colours, vertex colours and textures
+  Untextured,  ///< base colours without textures
+  Lod,         ///< by triangle size: blue where fine, green, yellow, red where coarse
+};
+
+struct Look {
+  Coloring coloring = Coloring::Materials;
+  Background background = Background::Gradient;
+  /// Draw triangle edges over the surface.
+  bool wireframe = false;
+};
+
+}  // namespace lodestone::render
