@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
+#include <bit>
 
 #include "base/disjoint_sets.h"
 #include "base/hash.h"
@@ -72,17 +71,19 @@ std::uint32_t count_duplicates(const Mesh& mesh, const Weld& weld) {
 }
 
 template <class T>
+std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)> words_of(const T& value) noexcept {
+  return std::bit_cast<std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)>>(value);
+}
+
+template <class T>
 bool same_bits(const std::vector<T>& values, std::uint32_t i, std::uint32_t j) {
-  return values.empty() || std::memcmp(&values[i], &values[j], sizeof(T)) == 0;
+  return values.empty() || words_of(values[i]) == words_of(values[j]);
 }
 
 template <class T>
 std::uint64_t hash_bits(std::uint64_t seed, const std::vector<T>& values, std::uint32_t i) {
-  static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
   if (values.empty()) return seed;
-  std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)> words{};
-  std::memcpy(words.data(), &values[i], sizeof(T));
-  for (const std::uint32_t word : words) seed = hash_combine(seed, word);
+  for (const std::uint32_t word : words_of(values[i])) seed = hash_combine(seed, word);
   return seed;
 }
 
