@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "reader.h"
+#include "tidy.h"
+
+namespace lodestone {
+namespace {
+
+bool contains(std::string_view text, std::string_view word) { return text.find(word) != text.npos; }
+
+bool is_text(std::string_view head) { return head.find('\0') == head.npos; }
+
+// Lines of an OBJ whatever its name: "v 1 2 3" and a face, group or library among the first ones.
+bool looks_like_obj(std::string_view head) {
+  if (!is_text(head)) return false;
+  const bool vertex = head.starts_with("v ") || contains(head, "\nv ");
+  const bool rest = contains(head, "\nf ") || contains(head, "mtllib ") || contains(head, "\no ") ||
+                    contains(head, "\ng ") || contains(head, "\nvn ") || contains(head, "\nvt ");
+  return vertex && rest;
+}
+
+ReadFunction reader_by_content(std::string_view head) {
+  if (head.starts_with("ply\n") || head.starts_with("ply\r")) return read_ply;
+  if (looks_like_obj(head)) return read_obj;
+  return nullptr;
+}
+
+ReadFunction reader_by_extension(const std::string& extension) {
+  static constexpr std::array<std::pair<std::string_view, ReadFunction>, 2> table{{
+      {".obj", read_obj},
+      {".ply", read_ply},
+  }};
+  const auto* found = std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.first == extension; });
+  return found != table.end() ? found->second : nullptr;
+}
+
+}  // namespace
+
+ReadFunction find_reader(const Input& input) {
+  std::string head(4096, '\0');
+  head.resize(input.read(0, {reinterpret_cast<std::uint8_t*>(head.data()), head.size()}));
+  if (ReadFunction reader = reader_by_content(head)) return reader;
+  return reader_by_extension(input.extension());
+}
+
+Result<LoadedMesh> read_input(const Input& input, const ReadOptions& options, const Context& context) {
+  if (input.size() == 0) return Error{ErrorCode::BadData, "is empty", input.name()};
+  const ReadFunction reader = find_reader(input);
+  if (reader == nullptr) {
+    return Error{ErrorCode::Unsupported, "is not a mesh of a kind that can be read", input.name()};
+  }
+  auto loaded = reader(input, options, context);
+  if (!loaded) return loaded;
+  Mesh& mesh = loaded->mesh;
+  if (mesh.vertices.positions.size() > options.max_vertices) {
+    return too_large(input, "vertices", mesh.vertices.positions.size(), options.max_vertices);
+  }
+  if (mesh.indices.size() / 3 > options.max_triangles) {
+    return too_large(input, "triangles", mesh.indices.size() / 3, options.max_triangles);
+  }
+  Warnings warnings;
+  warnings.add_all(std::move(loaded.warnings()));
+  tidy(mesh, warnings);
+  if (mesh.indices.empty()) warnings.add("there are no faces", input.name());
+  if (auto valid = validate(mesh); !valid) {
+    return Error{ErrorCode::BadData, valid.error().message + " (" + valid.error().where + ")", input.name()};
+  }
+  return {std::move(*loaded), warnings.take()};
+}
+
+Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOptions& options, const Context& context) {
+  auto input = Input::open(file, options.max_file_bytes);
+  if (!input) return input.error();
+  return read_input(*input, options, context);
+}
+
+}  // namespace lodestone
