@@ -1,12 +1,45 @@
 // SPDX-License-Identifier: MIT
-// The only file that names OSMesa: its header declares the gl* functions that the function table replaces.
+// The only file that names OSMesa: its header declares the gl* functions that the function table replaces. The library
+// is loaded when a picture is first asked for: it brings LLVM along, 50 MB and a tenth of a second that reading or
+// building a model should not pay.
 #include "osmesa_context.h"
 
 #include <GL/osmesa.h>
+#include <dlfcn.h>
 
 #include <array>
 
 namespace lodestone::render {
+namespace {
+
+struct Osmesa {
+  decltype(&OSMesaCreateContextAttribs) create_context = nullptr;
+  decltype(&OSMesaMakeCurrent) make_current = nullptr;
+  decltype(&OSMesaDestroyContext) destroy_context = nullptr;
+  decltype(&OSMesaGetProcAddress) address = nullptr;
+};
+
+template <class Function>
+void find(void* library, const char* name, Function& function) {
+  function = reinterpret_cast<Function>(::dlsym(library, name));
+}
+
+// Null functions where it is not installed. Never unloaded: its threads outlive a context.
+const Osmesa& osmesa() {
+  static const Osmesa loaded = [] {
+    Osmesa found;
+    if (void* library = ::dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL)) {
+      find(library, "OSMesaCreateContextAttribs", found.create_context);
+      find(library, "OSMesaMakeCurrent", found.make_current);
+      find(library, "OSMesaDestroyContext", found.destroy_context);
+      find(library, "OSMesaGetProcAddress", found.address);
+    }
+    return found;
+  }();
+  return loaded;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<OsmesaContext>> OsmesaContext::create() {
   constexpr std::array<int, 13> wanted{OSMESA_FORMAT,
@@ -22,19 +55,24 @@ Result<std::unique_ptr<OsmesaContext>> OsmesaContext::create() {
                                        OSMESA_CONTEXT_MINOR_VERSION,
                                        3,
                                        0};
+  const Osmesa& library = osmesa();
+  if (library.create_context == nullptr || library.make_current == nullptr || library.destroy_context == nullptr ||
+      library.address == nullptr) {
+    return Error{ErrorCode::Unsupported, "OSMesa (libOSMesa.so.8) is not there, install libosmesa6", ""};
+  }
   std::unique_ptr<OsmesaContext> made{new OsmesaContext};
-  made->context_ = OSMesaCreateContextAttribs(wanted.data(), nullptr);
+  made->context_ = library.create_context(wanted.data(), nullptr);
   if (made->context_ == nullptr ||
-      OSMesaMakeCurrent(static_cast<OSMesaContext>(made->context_), made->pixel_, GL_UNSIGNED_BYTE, 16, 16) == 0) {
+      library.make_current(static_cast<OSMesaContext>(made->context_), made->pixel_, GL_UNSIGNED_BYTE, 16, 16) == 0) {
     return Error{ErrorCode::Unsupported, "OSMesa cannot make an OpenGL 3.3 core context, install a newer Mesa", ""};
   }
   return made;
 }
 
 OsmesaContext::~OsmesaContext() {
-  if (context_ != nullptr) OSMesaDestroyContext(static_cast<OSMesaContext>(context_));
+  if (context_ != nullptr) osmesa().destroy_context(static_cast<OSMesaContext>(context_));
 }
 
-void* OsmesaContext::address(const char* name) { return reinterpret_cast<void*>(OSMesaGetProcAddress(name)); }
+void* OsmesaContext::address(const char* name) { return reinterpret_cast<void*>(osmesa().address(name)); }
 
 }  // namespace lodestone::render
