@@ -3,11 +3,13 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 #include <lodestone/context.h>
 
@@ -32,6 +34,11 @@ void parallel_chunks(std::size_t count, std::size_t chunk, const Context& contex
   if (workers == 1 || chunks <= 1) {
     for (std::size_t i = 0; i < chunks; ++i) run(i);
     return;
+  }
+  // More threads than cores need a licence, or the scheduler complains on stderr.
+  std::optional<tbb::global_control> licence;
+  if (workers > tbb::this_task_arena::max_concurrency()) {
+    licence.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
   }
   tbb::task_arena arena{workers};
   arena.execute([&] {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Based on: Wald 2007, "On fast construction of SAH-based bounding volume hierarchies" (binned surface area heuristic).
+// Differs: for nearest-point queries, which visit the nearer child first. Boxes are float because corners are: they
+// are exact, and distances are computed in double.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <lodestone/types.h>
+
+#include "geometry/distance.h"
+
+namespace lodestone {
+
+class TriangleBvh {
+ public:
+  struct Nearest {
+    double squared_distance = std::numeric_limits<double>::infinity();
+    FaceId face = none;
+    std::uint32_t slot = none;  // hand it to the next query nearby
+  };
+
+  // Copies what it needs. O(n log n) time, about 80 bytes per triangle.
+  TriangleBvh(std::span<const glm::vec3> positions, std::span<const VertexId> indices);
+
+  [[nodiscard]] bool empty() const noexcept { return triangles_.empty(); }
+
+  // Nearest triangle; `hint` is the slot of a triangle that is likely near. Only ties depend on the hint.
+  [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t hint = none) const noexcept {
+    Nearest best;
+    if (hint != none) consider(p, hint, best);
+    if (!nodes_.empty())
+      descend(
+          p, [&] { return best.squared_distance; },
+          [&](std::uint32_t slot) {
+            consider(p, slot, best);
+            return true;
+          });
+    return best;
+  }
+
+  // Calls visit(face) for every triangle no farther than `radius` for which wanted(face), which is asked first, holds;
+  // visit returns false to stop.
+  template <class Wanted, class Visit>
+  void within(const glm::dvec3& p, double radius, Wanted wanted, Visit visit) const {
+    if (nodes_.empty()) return;
+    const double limit = radius * radius;
+    // The bound is exclusive below, hence the next larger number.
+    const double bound = std::nextafter(limit, std::numeric_limits<double>::infinity());
+    descend(
+        p, [&] { return bound; },
+        [&](std::uint32_t slot) {
+          return !wanted(faces_[slot]) || squared_distance(p, slot) > limit || visit(faces_[slot]);
+        });
+  }
+
+ private:
+  struct Node {
+    glm::vec3 low{0.0F};
+    std::uint32_t first = 0;  // leaf: first slot; else index of the right child (the left one follows its parent)
+    glm::vec3 high{0.0F};
+    std::uint32_t count = 0;  // slots of a leaf, 0 for an inner node
+
+    [[nodiscard]] double squared_distance(const glm::dvec3& p) const noexcept {
+      const glm::dvec3 d = glm::max(glm::max(glm::dvec3{low} - p, p - glm::dvec3{high}), glm::dvec3{0.0});
+      return squared_length(d);
+    }
+  };
+  struct Build;
+
+  [[nodiscard]] double squared_distance(const glm::dvec3& p, std::uint32_t slot) const noexcept {
+    const auto& t = triangles_[slot];
+    return squared_distance_to_triangle(p, glm::dvec3{t[0]}, glm::dvec3{t[1]}, glm::dvec3{t[2]});
+  }
+
+  void consider(const glm::dvec3& p, std::uint32_t slot, Nearest& best) const noexcept {
+    const double d = squared_distance(p, slot);
+    if (d < best.squared_distance) best = {d, faces_[slot], slot};
+  }
+
+  // Calls visit(slot) for the triangles of leaves nearer than bound(), nearer ones first, until it returns false.
+  template <class Bound, class Visit>
+  void descend(const glm::dvec3& p, Bound bound, Visit visit) const {
+    std::array<std::pair<double, std::uint32_t>, most_depth + 1> stack;
+    std::size_t top = 0;
+    stack[top++] = {nodes_[0].squared_distance(p), 0};
+    while (top > 0) {
+      const auto [distance, index] = stack[--top];
+      if (distance >= bound()) continue;
+      const Node& node = nodes_[index];
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        if (!visit(node.first + i)) return;
+      }
+      if (node.count > 0) continue;
+      std::pair near{nodes_[index + 1].squared_distance(p), index + 1};
+      std::pair far{nodes_[node.first].squared_distance(p), node.first};
+      if (far.first < near.first) std::swap(near, far);
+      if (far.first < bound()) stack[top++] = far;
+      if (near.first < bound()) stack[top++] = near;
+    }
+  }
+
+  static constexpr std::uint32_t most_depth = 112;  // 64 by surface area, then halves of at most 2^32
+
+  std::vector<Node> nodes_;  // depth first
+  std::vector<std::array<glm::vec3, 3>> triangles_;
+  std::vector<FaceId> faces_;
+};
+
+}  // namespace lodestone
