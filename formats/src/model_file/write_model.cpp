@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Order of blocks: base, records from coarse to fine, textures from small to large.
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include <lodestone/formats.h>
+
+#include "header.h"
+#include "output_file.h"
+#include "reader.h"
+#include "stack_codec.h"
+
+namespace lodestone {
+namespace {
+
+using namespace model_file;
+
+constexpr std::uint32_t max_grid_bits = 20;
+// A block is a quarter of the records before it, within these bounds: prefixes are fine-grained where files are small,
+// and tables cost little where they are large.
+constexpr std::uint32_t min_block_records = 1024;
+constexpr std::uint32_t max_block_records = 32768;
+
+struct TextureBytes {
+  std::uint32_t texture = 0;
+  std::shared_ptr<const std::vector<std::uint8_t>> bytes;
+};
+
+class ModelWriter {
+ public:
+  ModelWriter(const ModelData& data, const Context& context) : data_(data), context_(context) {}
+
+  Result<std::uint64_t> write(const std::filesystem::path& file, const ModelWriteOptions& options, const Box& box) {
+    describe(options, box);
+    gather_textures(file, options.embed_textures);
+    if (const Status done = encode(); !done) return done.error();
+    for (const TextureBytes& t : embedded_) {
+      header_.blocks.push_back({.kind = BlockKind::Texture,
+                                .compressed = false,
+                                .count = t.texture,
+                                .stored_bytes = t.bytes->size(),
+                                .raw_bytes = t.bytes->size(),
+                                .checksum = checksum(*t.bytes)});
+    }
+    return store(file);
+  }
+
+ private:
+  void describe(const ModelWriteOptions& options, const Box& box) {
+    header_.generator = "lodestone " LODESTONE_VERSION;
+    header_.surroundings = data_;
+    header_.method = data_.method;
+    header_.named_levels = data_.named_levels;
+    header_.normals = !data_.vertices.normals.empty();
+    header_.uvs = !data_.vertices.uvs.empty();
+    header_.colors = !data_.vertices.colors.empty();
+    header_.features = !data_.face_features.empty();
+    header_.records = static_cast<std::uint32_t>(data_.shapes.size());
+    header_.vertices = data_.vertices.size();
+    header_.faces = data_.face_begin.back();
+    if (options.quantize_bits > 0) header_.grid = choose_grid(box, data_.vertices, options.quantize_bits);
+  }
+
+  void gather_textures(const std::filesystem::path& file, bool embed) {
+    for (std::uint32_t i = 0; i < data_.textures.size(); ++i) {
+      const Texture& texture = data_.textures[i];
+      Texture& stated = header_.surroundings.textures[i];
+      stated.image.reset();
+      stated.encoded.reset();
+      const std::filesystem::path path{texture.path};
+      if (!embed && !path.empty()) {
+        stated.path = path.lexically_proximate(file.parent_path()).generic_string();
+        continue;
+      }
+      auto bytes = bytes_of(texture, stated.mime_type);
+      if (bytes == nullptr) {
+        warnings_.add("a texture could not be embedded; the file refers to it by path", texture.name);
+        stated.path = path.lexically_proximate(file.parent_path()).generic_string();
+        continue;
+      }
+      if (!embed) warnings_.add("a texture has no path to refer to; it is embedded", texture.name);
+      stated.path.clear();
+      embedded_.push_back({i, std::move(bytes)});
+    }
+    std::stable_sort(embedded_.begin(), embedded_.end(),
+                     [](const auto& a, const auto& b) { return a.bytes->size() < b.bytes->size(); });
+  }
+
+  static std::shared_ptr<const std::vector<std::uint8_t>> bytes_of(const Texture& texture, std::string& mime_type) {
+    if (texture.encoded != nullptr) return texture.encoded;
+    if (texture.image != nullptr && !texture.image->empty()) {
+      auto png = encode_png(*texture.image);
+      mime_type = "image/png";
+      if (png) return std::make_shared<const std::vector<std::uint8_t>>(std::move(png).value());
+      return nullptr;
+    }
+    if (texture.path.empty()) return nullptr;
+    const auto input = Input::open(texture.path, max_texture_bytes);
+    if (!input) return nullptr;
+    auto all = input->read_all();
+    return all ? std::make_shared<const std::vector<std::uint8_t>>(std::move(all).value()) : nullptr;
+  }
+
+  Status encode() {
+    StackWriter stack{data_, header_.grid};
+    auto columns = std::make_unique<WrittenColumns>();
+    stack.base(*columns);
+    add_block(BlockKind::Base, 0, *columns);
+    const auto records = static_cast<std::uint32_t>(data_.shapes.size());
+    for (std::uint32_t done = 0; done < records;) {
+      if (context_.cancelled()) return Error{ErrorCode::Cancelled, "writing was cancelled", {}};
+      context_.report("encode", static_cast<double>(done) / records);
+      const std::uint32_t count = std::min(std::clamp(done / 4, min_block_records, max_block_records), records - done);
+      stack.records(count, *columns);
+      add_block(BlockKind::Records, count, *columns);
+      done += count;
+    }
+    return Done{};
+  }
+
+  void add_block(BlockKind kind, std::uint32_t count, WrittenColumns& columns) {
+    packed_.push_back(pack_columns(columns));
+    const PackedBlock& block = packed_.back();
+    header_.blocks.push_back({.kind = kind,
+                              .compressed = block.compressed,
+                              .count = count,
+                              .stored_bytes = block.bytes.size(),
+                              .raw_bytes = block.raw_bytes,
+                              .checksum = checksum(block.bytes)});
+    for (ColumnWriter& column : columns) column.clear();
+  }
+
+  Result<std::uint64_t> store(const std::filesystem::path& file) {
+    auto out = OutputFile::create(file);
+    if (!out) return out.error();
+    const Bytes head = write_header(header_);
+    std::uint64_t bytes = head.size();
+    out->write(head.data(), head.size());
+    for (const PackedBlock& block : packed_) {
+      out->write(block.bytes.data(), block.bytes.size());
+      bytes += block.bytes.size();
+    }
+    for (const TextureBytes& t : embedded_) {
+      if (context_.cancelled()) return Error{ErrorCode::Cancelled, "writing was cancelled", file.string()};
+      out->write(t.bytes->data(), t.bytes->size());
+      bytes += t.bytes->size();
+    }
+    if (const Status done = out->commit(); !done) return done.error();
+    return {bytes, warnings_.take()};
+  }
+
+  static constexpr std::uint64_t max_texture_bytes = 1ULL << 32;
+
+  const ModelData& data_;
+  const Context& context_;
+  Header header_;
+  std::vector<PackedBlock> packed_;
+  std::vector<TextureBytes> embedded_;
+  Warnings warnings_;
+};
+
+}  // namespace
+
+Result<std::uint64_t> write_model(const ProgressiveModel& model, const std::filesystem::path& file,
+                                  const ModelWriteOptions& options, const Context& context) {
+  if (options.quantize_bits > max_grid_bits) {
+    return Error{ErrorCode::BadArgument, "positions can be quantised to at most 20 bits", file.string()};
+  }
+  return ModelWriter{model.data(), context}.write(file, options, model.bounds());
+}
+
+}  // namespace lodestone
