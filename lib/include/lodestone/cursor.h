@@ -12,12 +12,13 @@
 ///       for (const auto& draw : cursor.draws()) draw_triangles(draw.material, draw.first_index, draw.index_count);
 ///     }
 ///
-/// All memory is taken at construction; set_target, step and jump allocate nothing, cannot fail and cost O(records moved).
-/// One cursor belongs to one thread; many cursors share one model.
+/// All memory is taken at construction; set_target, step and jump allocate nothing, cannot fail and cost O(records
+/// moved). Construction costs O(slots + records) with Morph (which looks up where each vertex merges), else O(slots +
+/// start level). One cursor belongs to one thread; many cursors share one model.
 ///
-/// Geomorph (Hoppe 1996, section 3.2, bounded in time). A record on its way is drawn with the finer topology, its vertices
-/// part of the way to where they merge: position, normal, uv and colour together. Faces go, or come, only at the end
-/// where they have no area. Every record takes `morph_seconds`; turning back at any instant is seamless.
+/// Geomorph (Hoppe 1996, section 3.2, bounded in time). A record on its way is drawn with the finer topology, its
+/// vertices part of the way to where they merge: position, normal, uv and colour together. Faces go, or come, only at
+/// the end where they have no area. Every record takes `morph_seconds`; turning back at any instant is seamless.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +44,8 @@ class Target {
   /// The coarsest level that deviates by at most so many metres.
   [[nodiscard]] static Target error_m(double error_m) noexcept { return {Kind::ByError, error_m}; }
   /// The coarsest level that deviates by at most `max_error_px` on the screen. With hysteresis: the target stays while
-  /// the error of the present target lies within [1 - h, 1 + h] times the limit, so a camera that rests does not flicker.
+  /// the error of the present target lies within [1 - h, 1 + h] times the limit, so a camera that rests does not
+  /// flicker.
   [[nodiscard]] static Target pixels(const View& view, double max_error_px, double hysteresis = 0.15) noexcept;
 
  private:
@@ -72,7 +74,8 @@ struct CursorOptions {
   /// Time that one record takes from start to end. Longer is smoother and lags more. Range 0..10.
   double morph_seconds = 0.35;
   IndexWidth index_width = IndexWidth::Smallest;
-  /// Dirty ranges are kept at this granularity; smaller means less to upload and more ranges. A power of two.
+  /// Dirty ranges are kept at this granularity; smaller means less to upload and more ranges. A power of two, at least
+  /// 64 (raised to it).
   std::uint32_t dirty_block = 1024;
   /// Level to start at; clamped to the model's.
   Level start_level = 0;
@@ -110,12 +113,12 @@ class Cursor {
   void jump(Level level) noexcept;
 
   [[nodiscard]] const ProgressiveModel& model() const noexcept { return *model_; }
-  [[nodiscard]] Level level() const noexcept;         ///< of the topology drawn
+  [[nodiscard]] Level level() const noexcept;  ///< of the topology drawn
   [[nodiscard]] Level target_level() const noexcept;
-  [[nodiscard]] bool morphing() const noexcept;       ///< records are on their way
+  [[nodiscard]] bool morphing() const noexcept;  ///< records are on their way
   [[nodiscard]] std::uint32_t vertex_count() const noexcept;
   [[nodiscard]] std::uint32_t triangle_count() const noexcept;
-  [[nodiscard]] double error_m() const noexcept;      ///< of what is drawn: the coarsest level any record is on its way to
+  [[nodiscard]] double error_m() const noexcept;  ///< of what is drawn: the coarsest level any record is on its way to
 
   /// Arrays to draw; sizes are the slot counts, only the in-use prefix is meaningful. Addresses never change.
   [[nodiscard]] std::span<const glm::vec3> positions() const noexcept;
@@ -144,7 +147,10 @@ class Cursor {
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
  private:
+  struct State;
   std::shared_ptr<const ProgressiveModel> model_;
+  std::unique_ptr<std::byte[]> block_;  ///< the one allocation: the state and all arrays
+  State* state_ = nullptr;              ///< in block_
 };
 
 }  // namespace lodestone

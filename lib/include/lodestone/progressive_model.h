@@ -46,9 +46,10 @@ struct NamedLevel {
 /// coarsen.
 ///
 /// A *fan* record is the edge collapse of a vertex without seams. Everything but the re-pointed corners follows from
-/// the slot order: it adds the vertex s = vertex_count(level) and the last one or two faces of one material. With c0..ck the
-/// corners re-pointed from v to s, in ring order counter-clockwise about s, v is what c0 holds before refining, and
-/// the faces added are (s, v, a) with a the corner after c0 [left], then (s, b, v) with b the corner before ck [right].
+/// the slot order: it adds the vertex s = vertex_count(level) and the last one or two faces of one material. With
+/// c0..ck the corners re-pointed from v to s, in ring order counter-clockwise about s, v is what c0 holds before
+/// refining, and the faces added are (s, v, a) with a the corner after c0 [left], then (s, b, v) with b the corner
+/// before ck [right].
 ///
 /// An *edit* record is the general slot edit (seams, several materials, facet shifts, parts that vanish): a block of
 /// 32-bit words in `edits`, laid out as in progressive/record.h and docs/FILE_FORMAT.md.
@@ -76,12 +77,12 @@ struct ModelData : Surroundings {
   std::vector<FeatureId> face_features;
 
   /// The stack, in refining order.
-  std::vector<std::uint8_t> shapes;            ///< one per record, see RecordShape
-  std::uint32_t corner_bytes = 4;              ///< width of an element of fan_corners: 3 or 4
-  std::vector<std::uint8_t> fan_corners;       ///< little-endian corner slots (3 * face slot + 0..2)
-  std::vector<std::uint16_t> fan_materials;    ///< one per fan record; empty if there is one material
-  std::vector<std::uint32_t> edits;            ///< blocks of edit records
-  std::vector<std::uint32_t> value_xor;        ///< value_words() per moved vertex, see record.h for the order
+  std::vector<std::uint8_t> shapes;          ///< one per record, see RecordShape
+  std::uint32_t corner_bytes = 4;            ///< width of an element of fan_corners: 3 or 4
+  std::vector<std::uint8_t> fan_corners;     ///< little-endian corner slots (3 * face slot + 0..2)
+  std::vector<std::uint16_t> fan_materials;  ///< one per fan record; empty if there is one material
+  std::vector<std::uint32_t> edits;          ///< blocks of edit records
+  std::vector<std::uint32_t> value_xor;      ///< value_words() per moved vertex, see record.h for the order
 
   /// Descending errors, ascending levels; the first has level 0.
   std::vector<ErrorStep> errors;
@@ -115,9 +116,12 @@ class ProgressiveModel {
     return static_cast<std::uint32_t>(data_.base_face_counts.size());
   }
 
-  /// What a level holds. O(log records + 64): checkpoints every 64 records or so, then the shapes between.
+  /// What a level holds. O(log records + 256): checkpoints every 256 records, then the shapes between.
   [[nodiscard]] LevelInfo info(Level level) const noexcept;
   [[nodiscard]] double error_m(Level level) const noexcept;
+
+  /// Triangles at the finest level.
+  [[nodiscard]] std::uint32_t triangle_count() const noexcept { return finest_triangles_; }
 
   /// The finest level with at most this many triangles (level 0 if even that has more).
   [[nodiscard]] Level level_of_triangles(std::uint32_t triangles) const noexcept;
@@ -139,18 +143,16 @@ class ProgressiveModel {
   friend class Cursor;
   ProgressiveModel() = default;
 
-  /// Where the stack stands at a level: running positions in the payload arrays and the counts in use.
+  /// Counts at every 256th level, and where its edits begin: what info() needs to go on from there.
   struct Checkpoint {
-    std::uint64_t fan_corner = 0;
     std::uint64_t edit_word = 0;
-    std::uint64_t value_word = 0;
-    std::uint32_t fan_record = 0;
     std::uint32_t vertices = 0;
     std::uint32_t triangles = 0;
   };
 
   ModelData data_;
   std::vector<Checkpoint> checkpoints_;
+  std::uint32_t finest_triangles_ = 0;
   Box bounds_;
 };
 

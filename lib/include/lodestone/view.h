@@ -3,6 +3,7 @@
 /// A camera, and the only formula that turns an error in metres into pixels.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <lodestone/types.h>

@@ -12,11 +12,13 @@
 
 namespace lodestone::progressive {
 
-// A flat log of slot edits. One record: begin(), then any mix of the four verbs, then end(). Rules, asserted by record():
+// A flat log of slot edits. One record: begin(), then any mix of the four verbs, then end(). Rules, asserted by
+// record():
 //   - a face or vertex is removed once and not mentioned afterwards;
 //   - after end(), no remaining face names a removed vertex;
 //   - errors may come in any order: record() makes them monotone by running maximum.
-// Cost: 16 bytes a record + 4 per removed face + 8 per removed vertex or re-pointed corner + 4 + 4 * value_words per move.
+// Cost: 16 bytes a record + 4 per removed face + 8 per removed vertex or re-pointed corner + 4 + 4 * value_words per
+// move.
 class EditLog {
  public:
   // `value_words` as ModelData::value_words() of the source's arrays.

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// The door: nothing but data that passed here is ever played.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <lodestone/progressive_model.h>
+
+#include "progressive/stack.h"
+
+namespace lodestone::progressive {
+
+// What one replay of the stack from base to finest found.
+struct Replay {
+  std::vector<StackPosition> checkpoints;  // one per checkpoint_spacing records, from level 0
+  StackPosition end;
+  Box bounds;
+};
+inline constexpr std::uint32_t checkpoint_spacing = 256;
+
+// Replays the stack, checking every count, index, value and error before it is used. Never reads outside the arrays,
+// whatever they hold. O(records + slots).
+[[nodiscard]] Result<Replay> check(const ModelData& data);
+
+}  // namespace lodestone::progressive

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <lodestone/progressive_model.h>
+
+#include "progressive/values.h"
+
+namespace lodestone {
+namespace {
+
+constexpr std::size_t most_words = 3 * 9 + 2;
+
+// A triangle as words: the bits of its three corners from the smallest on, then material and feature.
+using Key = std::array<std::uint32_t, most_words>;
+
+class Triangles {
+ public:
+  explicit Triangles(const Mesh& mesh) : mesh_(mesh), words_(progressive::value_words(mesh.vertices)) {
+    order_.resize(mesh.triangle_count());
+    for (FaceId f = 0; f < order_.size(); ++f) order_[f] = {hash(f), f};
+    std::sort(order_.begin(), order_.end());
+  }
+
+  [[nodiscard]] std::uint64_t hash_at(std::size_t i) const { return order_[i].first; }
+  [[nodiscard]] FaceId face_at(std::size_t i) const { return order_[i].second; }
+  [[nodiscard]] std::size_t size() const { return order_.size(); }
+
+  [[nodiscard]] Key key(FaceId face) const {
+    Key corners{};
+    for (std::size_t c = 0; c < 3; ++c)
+      value(mesh_.indices[3 * static_cast<std::size_t>(face) + c], &corners[c * words_]);
+    std::size_t first = 0;
+    for (std::size_t c = 1; c < 3; ++c) {
+      if (rotation_less(corners, c, first)) first = c;
+    }
+    Key key{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::copy_n(&corners[(first + c) % 3 * words_], words_, &key[c * words_]);
+    }
+    key[3 * words_] = mesh_.face_material(face);
+    key[3 * words_ + 1] = mesh_.face_feature(face);
+    return key;
+  }
+
+ private:
+  void value(VertexId vertex, std::uint32_t* words) const {
+    const VertexArrays& v = mesh_.vertices;
+    const auto put = [&](const auto& array) {
+      if (array.empty()) return;
+      std::memcpy(words, &array[vertex], sizeof(array[0]));
+      words += sizeof(array[0]) / 4;
+    };
+    put(v.positions);
+    put(v.normals);
+    put(v.uvs);
+    put(v.colors);
+  }
+
+  // Whether the corners read from `a` on come before those read from `b` on.
+  [[nodiscard]] bool rotation_less(const Key& corners, std::size_t a, std::size_t b) const {
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t w = 0; w < words_; ++w) {
+        const std::uint32_t x = corners[(a + c) % 3 * words_ + w];
+        const std::uint32_t y = corners[(b + c) % 3 * words_ + w];
+        if (x != y) return x < y;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] std::uint64_t hash(FaceId face) const {
+    std::uint64_t h = 0x9E3779B97F4A7C15ULL;
+    for (const std::uint32_t word : key(face)) {
+      h = (h ^ word) * 0xFF51AFD7ED558CCDULL;
+      h ^= h >> 32U;
+    }
+    return h;
+  }
+
+  const Mesh& mesh_;
+  std::size_t words_;
+  std::vector<std::pair<std::uint64_t, FaceId>> order_;
+};
+
+}  // namespace
+
+std::string compare_with_source(const ProgressiveModel& model, const Mesh& source) {
+  const Mesh finest = model.extract(model.record_count());
+  if (finest.origin != source.origin) return "the origins differ";
+  if (finest.triangle_count() != source.triangle_count()) {
+    return "the finest level has " + std::to_string(finest.triangle_count()) + " triangles, the source " +
+           std::to_string(source.triangle_count());
+  }
+  if (source.triangle_count() == 0) return {};
+  if (progressive::value_words(finest.vertices) != progressive::value_words(source.vertices)) {
+    return "the vertex attributes differ";
+  }
+  if (finest.materials.size() != source.materials.size()) return "the materials differ";
+  const Triangles ours{finest};
+  const Triangles theirs{source};
+  for (std::size_t i = 0; i < theirs.size(); ++i) {
+    if (ours.hash_at(i) == theirs.hash_at(i) && ours.key(ours.face_at(i)) == theirs.key(theirs.face_at(i))) continue;
+    return theirs.hash_at(i) <= ours.hash_at(i)
+               ? "triangle " + std::to_string(theirs.face_at(i)) + " of the source is not in the finest level"
+               : "triangle " + std::to_string(ours.face_at(i)) + " of the finest level is not in the source";
+  }
+  return {};
+}
+
+}  // namespace lodestone
