@@ -186,7 +186,7 @@ Cursor::Cursor(std::shared_ptr<const ProgressiveModel> model, const CursorOption
 }
 
 void Cursor::set_target(const Target& target) noexcept {
-  const double value = std::max(target.value_, 0.0);  // NaN becomes 0
+  const double value = target.value_ > 0.0 ? target.value_ : 0.0;  // NaN too
   const auto count = [](double v) { return static_cast<std::uint32_t>(std::min(v, static_cast<double>(none))); };
   switch (target.kind_) {
     case Target::Kind::ByLevel:
