@@ -24,14 +24,21 @@ bool looks_like_obj(std::string_view head) {
 
 ReadFunction reader_by_content(std::string_view head) {
   if (head.starts_with("ply\n") || head.starts_with("ply\r")) return read_ply;
+  if (is_text(head) && contains(head, "CityModel") && contains(head, "citygml")) return read_citygml;
+  if (is_text(head) && contains(head, "\"CityJSON")) return read_cityjson;
   if (looks_like_obj(head)) return read_obj;
   return nullptr;
 }
 
 ReadFunction reader_by_extension(const std::string& extension) {
-  static constexpr std::array<std::pair<std::string_view, ReadFunction>, 2> table{{
+  static constexpr std::array<std::pair<std::string_view, ReadFunction>, 7> table{{
       {".obj", read_obj},
       {".ply", read_ply},
+      {".gml", read_citygml},
+      {".citygml", read_citygml},
+      {".json", read_cityjson},
+      {".cityjson", read_cityjson},
+      {".jsonl", read_cityjson},
   }};
   const auto* found = std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.first == extension; });
   return found != table.end() ? found->second : nullptr;
