@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// Binary glTF 2.0: one mesh, one primitive per material over shared vertex arrays, everything in one file.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "axes.h"
+#include "gltf_colors.h"
+#include "writers.h"
+
+namespace lodestone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian and written as it lies in memory");
+
+enum GltfConstant : int {
+  ArrayBuffer = 34962,
+  ElementArrayBuffer = 34963,
+  UnsignedShort = 5123,
+  UnsignedInt = 5125,
+  Float = 5126,
+};
+
+constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) & ~std::uint64_t{3}; }
+
+// glTF takes JPEG and PNG; anything else is turned into PNG.
+Result<EncodedTexture> jpeg_or_png(const Texture& texture) {
+  auto encoded = encoded_texture(texture);
+  if (!encoded || encoded->mime_type == "image/jpeg" || encoded->mime_type == "image/png") return encoded;
+  auto image = decode_image(encoded->bytes, texture.name);
+  if (!image) return image.error();
+  auto png = encode_png(*image);
+  if (!png) return png.error();
+  return EncodedTexture{std::move(*png), "image/png"};
+}
+
+class GlbWriter {
+ public:
+  explicit GlbWriter(const Mesh& mesh) : mesh_{mesh} {}
+  [[nodiscard]] Status plan(std::vector<Warning>& warnings);
+  [[nodiscard]] std::uint64_t total_bytes() const { return 12 + 8 + json_.size() + 8 + binary_bytes_; }
+  void write(BlockWriter& out) const;
+
+ private:
+  int add_view(std::uint64_t size, int target);
+  int add_accessor(int view, int type, std::uint64_t count, const char* shape);
+  void plan_faces();
+  [[nodiscard]] Json plan_attributes();
+  void plan_textures(std::vector<Warning>& warnings);
+  [[nodiscard]] Json material_json(const Material& material) const;
+  void write_vertices(BlockWriter& out) const;
+  void write_indices(BlockWriter& out) const;
+
+  const Mesh& mesh_;
+  Json root_;
+  std::string json_;
+  std::uint64_t binary_bytes_ = 0;
+  std::vector<std::vector<FaceId>> faces_;  // by material
+  bool short_indices_ = false;
+  std::vector<EncodedTexture> images_;
+  std::vector<int> texture_ids_;  // -1 for those left out
+};
+
+int GlbWriter::add_view(std::uint64_t size, int target) {
+  Json view{{"buffer", 0}, {"byteOffset", binary_bytes_}, {"byteLength", size}};
+  if (target != 0) view["target"] = target;
+  root_["bufferViews"].push_back(std::move(view));
+  binary_bytes_ += padded(size);
+  return static_cast<int>(root_["bufferViews"].size()) - 1;
+}
+
+int GlbWriter::add_accessor(int view, int type, std::uint64_t count, const char* shape) {
+  root_["accessors"].push_back({{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
+  return static_cast<int>(root_["accessors"].size()) - 1;
+}
+
+void GlbWriter::plan_faces() {
+  faces_.resize(mesh_.materials.size());
+  for (FaceId f = 0; f < mesh_.triangle_count(); ++f) faces_[mesh_.face_material(f)].push_back(f);
+  constexpr std::uint32_t restart = 65535;  // the largest 16-bit index has a meaning of its own
+  short_indices_ = mesh_.vertex_count() <= restart;
+}
+
+Json GlbWriter::plan_attributes() {
+  const VertexArrays& v = mesh_.vertices;
+  const std::uint64_t count = v.size();
+  Json attributes;
+  glm::vec3 low{std::numeric_limits<float>::infinity()};
+  glm::vec3 high{-std::numeric_limits<float>::infinity()};
+  for (const auto& p : v.positions) {
+    low = glm::min(low, z_up_to_y_up(p));
+    high = glm::max(high, z_up_to_y_up(p));
+  }
+  const int positions = add_accessor(add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
+  root_["accessors"][positions]["min"] = {low.x, low.y, low.z};
+  root_["accessors"][positions]["max"] = {high.x, high.y, high.z};
+  attributes["POSITION"] = positions;
+  if (!v.normals.empty()) attributes["NORMAL"] = add_accessor(add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
+  if (!v.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(add_view(8 * count, ArrayBuffer), Float, count, "VEC2");
+  if (!v.colors.empty()) {
+    const int colors = add_accessor(add_view(8 * count, ArrayBuffer), UnsignedShort, count, "VEC4");
+    root_["accessors"][colors]["normalized"] = true;
+    attributes["COLOR_0"] = colors;
+  }
+  return attributes;
+}
+
+void GlbWriter::plan_textures(std::vector<Warning>& warnings) {
+  for (const Texture& texture : mesh_.textures) {
+    texture_ids_.push_back(-1);
+    auto encoded = jpeg_or_png(texture);
+    if (!encoded) {
+      warnings.push_back({"a texture was left out: it " + encoded.error().message, encoded.error().where});
+      continue;
+    }
+    texture_ids_.back() = static_cast<int>(images_.size());
+    images_.push_back(std::move(*encoded));
+    const EncodedTexture& image = images_.back();
+    root_["images"].push_back(
+        {{"name", texture.name}, {"mimeType", image.mime_type}, {"bufferView", add_view(image.bytes.size(), 0)}});
+    root_["textures"].push_back({{"source", texture_ids_.back()}});
+  }
+}
+
+Json GlbWriter::material_json(const Material& material) const {
+  Json pbr{{"metallicFactor", 0.0}};
+  const glm::vec4& c = material.base_color;
+  const auto linear = [](float value) { return srgb_to_linear(std::clamp(static_cast<double>(value), 0.0, 1.0)); };
+  pbr["baseColorFactor"] = {linear(c.r), linear(c.g), linear(c.b), std::clamp(static_cast<double>(c.a), 0.0, 1.0)};
+  const bool textured = material.texture != none && texture_ids_[material.texture] >= 0;
+  if (textured) pbr["baseColorTexture"] = {{"index", texture_ids_[material.texture]}};
+  Json json{{"name", material.name}, {"pbrMetallicRoughness", std::move(pbr)}};
+  if (material.alpha_cutoff > 0.0F) {
+    json["alphaMode"] = "MASK";
+    json["alphaCutoff"] = material.alpha_cutoff;
+  } else if (material.transparent()) {
+    json["alphaMode"] = "BLEND";
+  }
+  if (material.double_sided) json["doubleSided"] = true;
+  return json;
+}
+
+Status GlbWriter::plan(std::vector<Warning>& warnings) {
+  root_["asset"] = {{"version", "2.0"}, {"generator", "Lodestone"}};
+  root_["scene"] = 0;
+  root_["scenes"].push_back({{"nodes", {0}}});
+  Json node{{"name", "lodestone"}};
+  const glm::dvec3 origin = z_up_to_y_up(mesh_.origin);
+  if (origin != glm::dvec3{0.0}) node["translation"] = {origin.x, origin.y, origin.z};
+  if (!mesh_.crs.empty()) node["extras"] = {{"crs", mesh_.crs}};
+  if (mesh_.triangle_count() > 0) {
+    plan_faces();
+    const Json attributes = plan_attributes();
+    Json primitives = Json::array();
+    for (std::size_t m = 0; m < faces_.size(); ++m) {
+      if (faces_[m].empty()) continue;
+      const std::uint64_t count = 3 * faces_[m].size();
+      const int view = add_view(count * (short_indices_ ? 2 : 4), ElementArrayBuffer);
+      const int indices = add_accessor(view, short_indices_ ? UnsignedShort : UnsignedInt, count, "SCALAR");
+      primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", m}});
+    }
+    plan_textures(warnings);
+    for (const Material& material : mesh_.materials) root_["materials"].push_back(material_json(material));
+    root_["meshes"].push_back({{"primitives", std::move(primitives)}});
+    node["mesh"] = 0;
+  }
+  root_["nodes"].push_back(std::move(node));
+  if (binary_bytes_ > 0) root_["buffers"].push_back({{"byteLength", binary_bytes_}});
+  json_ = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
+  json_.resize(padded(json_.size()), ' ');
+  if (total_bytes() > std::numeric_limits<std::uint32_t>::max()) {
+    return Error{ErrorCode::TooLarge, "a GLB holds at most 4 GB; write .ply or .obj instead", {}};
+  }
+  return Done{};
+}
+
+void GlbWriter::write_vertices(BlockWriter& out) const {
+  const VertexArrays& v = mesh_.vertices;
+  for (std::size_t i = 0; i < v.positions.size() && out.pass(); ++i) out.raw(z_up_to_y_up(v.positions[i]));
+  for (std::size_t i = 0; i < v.normals.size() && out.pass(); ++i) {
+    glm::vec3 n = z_up_to_y_up(v.normals[i]);
+    const float length = glm::length(n);
+    constexpr float tolerance = 4e-4F;  // gltf-validator allows 5e-4
+    if (!(std::abs(length - 1.0F) < tolerance)) n = length > 0.0F ? n / length : glm::vec3{0.0F, 1.0F, 0.0F};
+    out.raw(n);
+  }
+  for (std::size_t i = 0; i < v.uvs.size() && out.pass(); ++i) out.raw(flip_v(v.uvs[i]));
+  std::array<std::uint16_t, 256> linear{};
+  for (int c = 0; c < 256; ++c)
+    linear[c] = static_cast<std::uint16_t>(std::lround(srgb_to_linear(c / 255.0) * 65535.0));
+  for (std::size_t i = 0; i < v.colors.size() && out.pass(); ++i) {
+    for (int c = 0; c < 3; ++c) out.raw(linear[v.colors[i][c]]);
+    out.raw(static_cast<std::uint16_t>(v.colors[i].a * 257));
+  }
+}
+
+void GlbWriter::write_indices(BlockWriter& out) const {
+  for (const auto& faces : faces_) {
+    for (const FaceId f : faces) {
+      for (int c = 0; c < 3; ++c) {
+        const VertexId v = mesh_.indices[3 * std::size_t{f} + c];
+        if (short_indices_) {
+          out.raw(static_cast<std::uint16_t>(v));
+        } else {
+          out.raw(v);
+        }
+      }
+      if (!out.pass()) return;
+    }
+    if (short_indices_ && faces.size() % 2 == 1) out.raw(std::uint16_t{0});
+  }
+}
+
+void GlbWriter::write(BlockWriter& out) const {
+  const bool has_binary = binary_bytes_ > 0;
+  out.text("glTF");
+  out.raw(std::uint32_t{2});
+  out.raw(static_cast<std::uint32_t>(has_binary ? total_bytes() : total_bytes() - 8));
+  out.raw(static_cast<std::uint32_t>(json_.size()));
+  out.text("JSON");
+  out.text(json_);
+  if (!has_binary) return;
+  out.raw(static_cast<std::uint32_t>(binary_bytes_));
+  out.text(std::string_view{"BIN\0", 4});
+  write_vertices(out);
+  write_indices(out);
+  for (const EncodedTexture& image : images_) {
+    out.text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
+    out.text(std::string(padded(image.bytes.size()) - image.bytes.size(), '\0'));
+  }
+}
+
+}  // namespace
+
+Status write_glb(const Mesh& mesh, const std::filesystem::path& file, const Context& context) {
+  std::vector<Warning> warnings;
+  GlbWriter writer{mesh};
+  if (auto planned = writer.plan(warnings); !planned) {
+    return Error{planned.error().code, planned.error().message, file.string()};
+  }
+  auto created = OutputFile::create(file);
+  if (!created) return created.error();
+  BlockWriter out{std::move(*created), file.string(), context, writer.total_bytes()};
+  writer.write(out);
+  if (auto done = out.commit(); !done) return done;
+  return {Done{}, std::move(warnings)};
+}
+
+}  // namespace lodestone
