@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "generate/house_plan.h"
+#include "generate/sheet.h"
+
+namespace lodestone {
+
+namespace generate {
+
+namespace {
+
+// Triangles of everything at its fewest segments.
+std::uint64_t least_triangles(const House& house) {
+  std::uint64_t sum = house.body.triangle_count();
+  for (const Part& part : house.parts.list) sum += house.parts.triangles(part, part.segments);
+  return sum;
+}
+
+// Segments per part that use up `spare` triangles: all alike first, then one more here and there, the rest for the
+// finial, which takes any even number.
+std::vector<std::uint32_t> share_out(const House& house, std::uint64_t spare) {
+  const auto& list = house.parts.list;
+  std::uint64_t step = 0;
+  for (const Part& part : list) step += part.shape == Shape::Spike ? 0 : house.parts.gain(part);
+  const std::uint64_t all = step == 0 ? 0 : spare / step;
+  spare -= all * step;
+  std::vector<std::uint32_t> segments;
+  for (const Part& part : list) {
+    const std::uint32_t gain = house.parts.gain(part);
+    std::uint32_t count = part.segments;
+    if (gain > 0 && part.shape != Shape::Spike) {
+      count += static_cast<std::uint32_t>(all);
+      if (gain <= spare) {
+        ++count;
+        spare -= gain;
+      }
+    }
+    segments.push_back(count);
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].shape != Shape::Spike) continue;
+    segments[i] += static_cast<std::uint32_t>(spare / 2);
+    break;
+  }
+  return segments;
+}
+
+}  // namespace
+
+Tier tier(std::uint32_t index, std::uint64_t seed) {
+  static constexpr Tier tiers[] = {
+      {2, 3, 2, false, false, 0.0, false}, {2, 3, 2, true, false, 0.0, false},  {2, 4, 3, true, true, 0.0, false},
+      {3, 5, 3, true, true, 0.0, true},    {3, 5, 3, true, true, 0.34, true},   {3, 6, 4, true, true, 0.28, true},
+      {4, 7, 4, true, true, 0.25, true},   {4, 9, 5, true, true, 0.25, true},   {5, 13, 6, true, true, 0.22, true},
+      {5, 19, 8, true, true, 0.20, true},  {6, 27, 10, true, true, 0.20, true}, {7, 39, 14, true, true, 0.20, true}};
+  Tier t = tiers[std::min<std::size_t>(index, std::size(tiers) - 1)];
+  if (index > 0 && seed % 2 == 1 && t.bays % 2 == 0) ++t.bays;  // an odd number has the door in the middle
+  return t;
+}
+
+void append_house(Mesh& mesh, const Palette& palette, Roof roof, std::uint64_t seed, std::uint32_t triangles,
+                  const std::string& prefix, const Context& context) {
+  constexpr std::uint32_t tiers = 12;
+  const std::size_t features = mesh.features.size();
+  HousePlan plan{roof, tier(0, seed), seed};
+  House house = draw_house(mesh, palette, plan, prefix);
+  for (std::uint32_t i = 1; i < tiers && !context.cancelled(); ++i) {
+    std::vector<Feature> kept{mesh.features.begin() + static_cast<std::ptrdiff_t>(features), mesh.features.end()};
+    mesh.features.resize(features);
+    plan.tier = tier(i, seed);
+    House richer = draw_house(mesh, palette, plan, prefix);
+    if (least_triangles(richer) > triangles) {
+      mesh.features.resize(features);
+      mesh.features.insert(mesh.features.end(), kept.begin(), kept.end());
+      break;
+    }
+    house = std::move(richer);
+  }
+  const std::uint64_t least = least_triangles(house);
+  const std::vector<std::uint32_t> segments = share_out(house, triangles > least ? triangles - least : 0);
+  const std::vector<double> uv_scale = uv_scales(mesh);
+  house.body.emit(mesh, uv_scale);
+  for (std::size_t i = 0; i < segments.size() && !context.cancelled(); ++i) {
+    house.parts.emit(house.parts.list[i], segments[i], mesh, uv_scale);
+  }
+}
+
+}  // namespace generate
+
+Result<Mesh> generate_house(const HouseOptions& options, const Context& context) {
+  using namespace generate;
+  if (Status status = check_options(options); !status) return status.error();
+  Mesh mesh;
+  mesh.origin = {677'250.0, 5'403'120.0, 372.0};
+  mesh.crs = "EPSG:25832";
+  add_textures(mesh, options, house_cloths, context);
+  const Palette palette = add_palette(mesh, options.seed);
+  append_house(mesh, palette, options.roof, options.seed, options.triangles == 0 ? 30'000 : options.triangles, "",
+               context);
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "generation was cancelled", {}};
+  return mesh;
+}
+
+}  // namespace lodestone
