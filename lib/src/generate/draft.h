@@ -80,6 +80,11 @@ struct Parts {
   // Triangles of a part with that many segments, and how many each further segment adds (0: it has no curves).
   [[nodiscard]] std::uint32_t triangles(const Part& part, std::uint32_t segments) const;
   [[nodiscard]] std::uint32_t gain(const Part& part) const;
+  // Of all parts at their fewest segments.
+  [[nodiscard]] std::uint64_t least_triangles() const;
+  // Segments per part that use up `spare` further triangles: all alike first, then one more here and there; the first
+  // spike takes what is left, which any even number can be.
+  [[nodiscard]] std::vector<std::uint32_t> share_out(std::uint64_t spare) const;
   void emit(const Part& part, std::uint32_t segments, Mesh& mesh, const std::vector<double>& uv_scale) const;
 };
 

@@ -12,38 +12,7 @@ namespace {
 
 // Triangles of everything at its fewest segments.
 std::uint64_t least_triangles(const House& house) {
-  std::uint64_t sum = house.body.triangle_count();
-  for (const Part& part : house.parts.list) sum += house.parts.triangles(part, part.segments);
-  return sum;
-}
-
-// Segments per part that use up `spare` triangles: all alike first, then one more here and there, the rest for the
-// finial, which takes any even number.
-std::vector<std::uint32_t> share_out(const House& house, std::uint64_t spare) {
-  const auto& list = house.parts.list;
-  std::uint64_t step = 0;
-  for (const Part& part : list) step += part.shape == Shape::Spike ? 0 : house.parts.gain(part);
-  const std::uint64_t all = step == 0 ? 0 : spare / step;
-  spare -= all * step;
-  std::vector<std::uint32_t> segments;
-  for (const Part& part : list) {
-    const std::uint32_t gain = house.parts.gain(part);
-    std::uint32_t count = part.segments;
-    if (gain > 0 && part.shape != Shape::Spike) {
-      count += static_cast<std::uint32_t>(all);
-      if (gain <= spare) {
-        ++count;
-        spare -= gain;
-      }
-    }
-    segments.push_back(count);
-  }
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (list[i].shape != Shape::Spike) continue;
-    segments[i] += static_cast<std::uint32_t>(spare / 2);
-    break;
-  }
-  return segments;
+  return house.body.triangle_count() + house.parts.least_triangles();
 }
 
 }  // namespace
@@ -78,7 +47,7 @@ void append_house(Mesh& mesh, const Palette& palette, Roof roof, std::uint64_t s
     house = std::move(richer);
   }
   const std::uint64_t least = least_triangles(house);
-  const std::vector<std::uint32_t> segments = share_out(house, triangles > least ? triangles - least : 0);
+  const std::vector<std::uint32_t> segments = house.parts.share_out(triangles > least ? triangles - least : 0);
   const std::vector<double> uv_scale = uv_scales(mesh);
   house.body.emit(mesh, uv_scale);
   for (std::size_t i = 0; i < segments.size() && !context.cancelled(); ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <numbers>
 
 #include "generate/house_plan.h"
 
@@ -44,7 +45,7 @@ std::uint32_t shared_outline(House& house, std::vector<glm::dvec2> outline) {
 }
 
 void add_shutters(House& house, const Facade& facade, const Opening& o, FeatureId feature) {
-  const double width = 0.5 * metres(o.u1 - o.u0);
+  const double width = 0.42 * metres(o.u1 - o.u0);
   const double height = metres(o.z1 - o.z0);
   const std::uint32_t outline = shared_outline(house, louvre(height));
   for (const bool left : {true, false}) {
@@ -120,9 +121,7 @@ void add_balcony(House& house, const Facade& facade, const Opening& o, int floor
   box(house, f, {0.0, front, rail - 0.055}, {2.0 * half, 0.14, 0.10}, stone);
 }
 
-void add_entrance(House& house, const Facade& facade, const Opening& door) {
-  const FeatureId feature =
-      house.feature("entrance_" + std::to_string(house.mesh->features.size()), "BuildingInstallation", house.building);
+void add_steps(House& house, const Facade& facade, const Opening& door, FeatureId feature) {
   const Look stone{house.palette.trim, feature};
   const Frame f = facade.upright((door.u0 + door.u1) / 2, 0);
   const double width = metres(door.u1 - door.u0);
@@ -133,7 +132,13 @@ void add_entrance(House& house, const Facade& facade, const Opening& door) {
     box(house, f, {0.0, 0.5 * (sunk_m - run), 0.0},
         {width + 0.9 + 0.3 * (steps - i), run + sunk_m, floor * (i + 1) / steps - 0.01}, stone);
   }
-  // A pediment on two consoles over the door.
+}
+
+void add_pediment(House& house, const Facade& facade, const Opening& door, FeatureId feature) {
+  const Look stone{house.palette.trim, feature};
+  const Frame f = facade.upright((door.u0 + door.u1) / 2, 0);
+  const double width = metres(door.u1 - door.u0);
+  // On two consoles over the door.
   const double top = metres(door.z1 + door.arch) + 0.42;
   const double half = 0.5 * width + 0.45;
   box(house, f, {0.0, 0.5 * (sunk_m - 0.5), top - 0.12}, {2.0 * half, 0.5 + sunk_m, 0.12}, stone);
@@ -145,13 +150,38 @@ void add_entrance(House& house, const Facade& facade, const Opening& door) {
   house.parts.list.push_back(pediment);
   for (const double side : {-1.0, 1.0})
     box(house, f, {side * (half - 0.16), 0.5 * (sunk_m - 0.32), top - 0.55}, {0.16, 0.32 + sunk_m, 0.45}, stone);
+}
+
+void add_lamps(House& house, const Facade& facade, const Opening& door, FeatureId feature) {
+  const Frame f = facade.upright((door.u0 + door.u1) / 2, 0);
+  const double half = 0.5 * metres(door.u1 - door.u0) + 0.45;
   for (const double side : {-1.0, 1.0}) {
     const std::uint32_t lamp =
         shared_outline(house, {{0.03, 0.0}, {0.09, 0.06}, {0.11, 0.14}, {0.12, 0.34}, {0.04, 0.42}, {0.02, 0.50}});
     Part part{
         .shape = Shape::Lathe, .segments = 8, .outline = lamp, .frame = f, .look = {house.palette.metal, feature}};
-    part.frame.origin = f.at({side * (half + 0.12), -0.10, floor + 1.7});
+    part.frame.origin = f.at({side * (half + 0.12), -0.10, metres(door.z0) + 1.7});
     house.parts.list.push_back(part);
+  }
+}
+
+void add_clock(House& house, const Facade& facade, int u, int z, FeatureId feature) {
+  const Frame wall = facade.frame(u, z);
+  const Look face{house.palette.frame, feature};
+  const Look hands{house.palette.metal, feature};
+  const std::uint32_t disc =
+      shared_outline(house, {{0.86, 0.0}, {0.86, 0.10}, {0.80, 0.14}, {0.74, 0.10}, {0.72, 0.09}});
+  Part part{.shape = Shape::Lathe, .segments = 12, .outline = disc, .frame = wall, .look = face};
+  part.frame.origin = wall.at({0.0, 0.0, -sunk_m});
+  house.parts.list.push_back(part);
+  // Ten past ten; twelve marks around.
+  for (int hour = 0; hour < 12; ++hour) {
+    const double angle = std::numbers::pi * hour / 6.0;
+    const glm::dvec3 out = wall.turn({std::sin(angle), std::cos(angle), 0.0});
+    const Frame ray{wall.at({0.0, 0.0, 0.045}), wall.z, glm::cross(out, wall.z), out};
+    const double from = hour == 10 || hour == 2 ? 0.0 : 0.56;
+    const double to = hour == 10 ? 0.42 : 0.66;
+    box(house, ray, {0.0, 0.0, from}, {0.06, hour % 3 == 0 ? 0.08 : 0.05, to - from}, hands);
   }
 }
 

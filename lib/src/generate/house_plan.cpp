@@ -33,6 +33,7 @@ Opening opening_at(const Draft& d, int side, int storey, int i, int bays) {
   o.u1 = middle + grid(0.5625);
   o.z0 = base + grid(storey == 0 ? 1.25 : 0.9375);
   o.z1 = base + grid(storey == 0 ? 3.0 : 2.6875);
+  if (!d.plan.tier.trim) o.rows = 2;
   if (storey == 0 && d.arched_ground) o.arch = (o.u1 - o.u0) / 2;
   if (storey == 0 && side == 0 && i == bays / 2) {
     o.leaf = Leaf::Door;
@@ -49,6 +50,15 @@ bool has_balcony(const Draft& d, int storey, int i, int bays) {
   if (pattern == 0) return i == bays / 2;
   if (pattern == 1) return storey == 1 && i % 2 == 1;
   return (i + storey) % 3 == 1;
+}
+
+void add_entrance(Draft& d, const Facade& facade, const Opening& door, int bays) {
+  const std::string id = "entrance_" + std::to_string(d.house.mesh->features.size());
+  const FeatureId feature = d.house.feature(id, "BuildingInstallation", d.house.building);
+  add_steps(d.house, facade, door, feature);
+  if (d.plan.tier.trim) add_lamps(d.house, facade, door, feature);
+  // A balcony over the door takes the pediment's place.
+  if (!has_balcony(d, 1, bays / 2, bays)) add_pediment(d.house, facade, door, feature);
 }
 
 void add_storey(Draft& d, const Footprint& footprint, int side, int storey) {
@@ -76,7 +86,7 @@ void add_storey(Draft& d, const Footprint& footprint, int side, int storey) {
     const Opening& o = openings[i];
     if (d.plan.tier.trim) add_opening_trim(house, facade, o, d.shutters && storey > 0, d.walls[side]);
     if (balconies[i]) add_balcony(house, facade, o, o.z0 - grid(0.0625));
-    if (o.leaf == Leaf::Door) add_entrance(house, facade, o);
+    if (o.leaf == Leaf::Door) add_entrance(d, facade, o, bays);
   }
 }
 
@@ -121,6 +131,7 @@ RoofShape add_tower(Draft& d, const Footprint& tower, int hall_top, int ridge_to
     if (d.plan.tier.trim) {
       add_opening_trim(house, facade, low[0], false, wall_feature);
       add_opening_trim(house, facade, high[0], false, wall_feature);
+      add_clock(house, facade, half, shaft - grid(1.25), wall_feature);
     }
   }
   // Above the hall's roof the tower has a fourth side.
@@ -163,7 +174,8 @@ void add_dormers_and_chimneys(Draft& d, RoofShape& roof) {
     const int u = (reach + grid(0.75) + (width - 2 * reach - grid(1.5)) * share / 4) / 64 * 64;
     if (width - 2 * reach < grid(5.0) && share == 3) continue;
     if (width - 2 * reach < grid(2.0)) continue;
-    add_chimney_pots(d.house, add_chimney(d.house, slope, u, v, roof.top + grid(0.875)));
+    const Point top = add_chimney(d.house, slope, u, v, roof.top + grid(0.875));
+    if (d.plan.tier.trim) add_chimney_pots(d.house, top);
   }
 }
 
@@ -238,7 +250,7 @@ House draw_house(Mesh& mesh, const Palette& palette, const HousePlan& plan, cons
   static constexpr const char* names[] = {"front", "right", "back", "left"};
   for (int k = 0; k < 4; ++k)
     d.walls[k] = house.feature(std::string{"wall_"} + names[k], "WallSurface", house.building);
-  d.arched_ground = d.rng.unit() < 0.5;
+  d.arched_ground = d.rng.unit() < 0.5 && plan.tier.trim;
   d.shutters = plan.tier.trim && d.rng.unit() < 0.7;
   const Footprint hall{0, 0, plan.tier.bays * bay + 2 * margin, plan.tier.side_bays * bay + 2 * margin};
   const int eave_z = floor_z(plan.tier.storeys);

@@ -37,7 +37,10 @@ void append_house(Mesh& mesh, const Palette& palette, Roof roof, std::uint64_t s
 // Ornaments: closed parts on a facade.
 void add_opening_trim(House& house, const Facade& facade, const Opening& o, bool shutters, FeatureId feature);
 void add_balcony(House& house, const Facade& facade, const Opening& o, int floor_z);
-void add_entrance(House& house, const Facade& facade, const Opening& door);
+void add_steps(House& house, const Facade& facade, const Opening& door, FeatureId feature);
+void add_pediment(House& house, const Facade& facade, const Opening& door, FeatureId feature);
+void add_lamps(House& house, const Facade& facade, const Opening& door, FeatureId feature);
+void add_clock(House& house, const Facade& facade, int u, int z, FeatureId feature);  // its centre
 void add_ring(House& house, const Footprint& plan, int z, Moulding moulding, Look look);
 void add_dentils(House& house, const Footprint& plan, int z, Look look);
 void add_quoins(House& house, const Footprint& plan, int z0, int z1, Look look);

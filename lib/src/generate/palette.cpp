@@ -121,12 +121,7 @@ glm::vec3 shutter_tint(Rng& rng) {
   return {t[0], t[1], t[2]};
 }
 
-}  // namespace
-
-double tile_m(Cloth cloth) noexcept { return facts[static_cast<std::size_t>(cloth)].tile_m; }
-
-Image paint(Cloth cloth, std::uint32_t size_px, std::uint64_t seed, const Context& context) {
-  const NoiseTable table{static_cast<std::uint32_t>(hash_combine(seed, 31))};
+Image paint(Cloth cloth, std::uint32_t size_px, std::uint64_t seed, const NoiseTable& table, const Context& context) {
   const auto own = static_cast<std::uint32_t>(hash_combine(seed, 32 + static_cast<std::uint64_t>(cloth)));
   Image image = blank(size_px);
   parallel_for_each(size_px, 16, context, [&](std::size_t row) {
@@ -140,14 +135,19 @@ Image paint(Cloth cloth, std::uint32_t size_px, std::uint64_t seed, const Contex
   return image;
 }
 
+}  // namespace
+
+double tile_m(Cloth cloth) noexcept { return facts[static_cast<std::size_t>(cloth)].tile_m; }
+
 void add_textures(Mesh& mesh, const GenerateOptions& options, std::uint32_t cloths, const Context& context) {
   const std::uint32_t count = options.textures == 0 ? cloths : std::min(options.textures, cloths);
+  const NoiseTable table{static_cast<std::uint32_t>(hash_combine(options.seed, 31))};
   for (std::uint32_t i = 0; i < count && !context.cancelled(); ++i) {
     Texture texture;
     texture.name = facts[i].name;
     if (options.pixels == Pixels::Make) {
-      texture.image =
-          std::make_shared<const Image>(paint(static_cast<Cloth>(i), options.texture_size_px, options.seed, context));
+      texture.image = std::make_shared<const Image>(
+          paint(static_cast<Cloth>(i), options.texture_size_px, options.seed, table, context));
     }
     mesh.textures.push_back(std::move(texture));
   }

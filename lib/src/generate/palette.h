@@ -17,7 +17,6 @@ inline constexpr std::uint32_t street_cloths = 11;
 
 // Length in metres that one repetition of the picture covers.
 [[nodiscard]] double tile_m(Cloth cloth) noexcept;
-[[nodiscard]] Image paint(Cloth cloth, std::uint32_t size_px, std::uint64_t seed, const Context& context);
 
 // Material ids of one house in its mesh, and how large each one's picture is.
 struct Palette {

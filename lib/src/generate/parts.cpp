@@ -229,6 +229,38 @@ std::uint32_t Parts::gain(const Part& part) const {
   return triangles(part, part.segments + 1) - triangles(part, part.segments);
 }
 
+std::uint64_t Parts::least_triangles() const {
+  std::uint64_t sum = 0;
+  for (const Part& part : list) sum += triangles(part, part.segments);
+  return sum;
+}
+
+std::vector<std::uint32_t> Parts::share_out(std::uint64_t spare) const {
+  std::uint64_t step = 0;
+  for (const Part& part : list) step += part.shape == Shape::Spike ? 0 : gain(part);
+  const std::uint64_t all = step == 0 ? 0 : spare / step;
+  spare -= all * step;
+  std::vector<std::uint32_t> segments;
+  for (const Part& part : list) {
+    const std::uint32_t more = gain(part);
+    std::uint32_t count = part.segments;
+    if (more > 0 && part.shape != Shape::Spike) {
+      count += static_cast<std::uint32_t>(all);
+      if (more <= spare) {
+        ++count;
+        spare -= more;
+      }
+    }
+    segments.push_back(count);
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].shape != Shape::Spike) continue;
+    segments[i] += static_cast<std::uint32_t>(spare / 2);
+    break;
+  }
+  return segments;
+}
+
 void Parts::emit(const Part& part, std::uint32_t segments, Mesh& mesh, const std::vector<double>& uv_scale) const {
   const Pen pen{mesh, part, uv_scale[part.look.material]};
   switch (part.shape) {
