@@ -13,6 +13,8 @@ const ImFontAtlas& font_atlas() {
   static const bool built = [] {
     ImFontConfig config;
     config.SizePixels = 13.0F;  // the size this bitmap-like font is sharp at
+    config.OversampleH = 1;
+    config.OversampleV = 1;
     config.PixelSnapH = true;
     atlas.AddFontDefault(&config);
     return atlas.Build();

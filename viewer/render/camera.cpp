@@ -2,30 +2,53 @@
 #include "camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 
 namespace lodestone::render {
 namespace {
 
 constexpr double margin_ratio = 1.06;
 
-// Moves the eye back along `forward` until every corner of the box is inside the picture.
+struct Extent {
+  double min = std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
+  void add(double value) {
+    min = std::min(min, value);
+    max = std::max(max, value);
+  }
+};
+
+// Places the eye so that every corner of the box is inside the picture, as near as that allows, and the corners'
+// outline is in its middle. Each turn backs off exactly, then centres; three suffice.
 View fitted(View view, const Box& bounds) {
-  const glm::dvec3 center = bounds.center();
   const glm::dvec3 right = glm::normalize(glm::cross(view.forward, view.up));
   const glm::dvec3 up = glm::cross(right, view.forward);
   const double tan_y = std::tan(view.fov_y_rad * 0.5) / margin_ratio;
   const double tan_x = tan_y * view.width_px / view.height_px;
-  double distance_m = 1e-3;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p{(corner & 1) != 0 ? bounds.max.x : bounds.min.x, (corner & 2) != 0 ? bounds.max.y : bounds.min.y,
-                       (corner & 4) != 0 ? bounds.max.z : bounds.min.z};
-    const glm::dvec3 d = p - center;
-    const double needed = std::max(std::abs(glm::dot(d, right)) / tan_x, std::abs(glm::dot(d, up)) / tan_y);
-    distance_m = std::max(distance_m, needed - glm::dot(d, view.forward));
+  glm::dvec3 aim = bounds.center();
+  for (int turn = 0; turn < 4; ++turn) {
+    double distance_m = 1e-3;
+    std::array<glm::dvec3, 8> corners{};  // right, up, forward about the aim
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const glm::dvec3 p{(i & 1) != 0 ? bounds.max.x : bounds.min.x, (i & 2) != 0 ? bounds.max.y : bounds.min.y,
+                         (i & 4) != 0 ? bounds.max.z : bounds.min.z};
+      const glm::dvec3 d = p - aim;
+      corners[i] = {glm::dot(d, right), glm::dot(d, up), glm::dot(d, view.forward)};
+      const double needed_m = std::max(std::abs(corners[i].x) / tan_x, std::abs(corners[i].y) / tan_y);
+      distance_m = std::max(distance_m, needed_m - corners[i].z);
+    }
+    view.eye = aim - view.forward * distance_m;
+    Extent x;
+    Extent y;
+    for (const glm::dvec3& c : corners) {
+      x.add(c.x / (distance_m + c.z));
+      y.add(c.y / (distance_m + c.z));
+    }
+    aim += (right * (x.min + x.max) + up * (y.min + y.max)) * (0.5 * distance_m);
   }
-  view.eye = center - view.forward * distance_m;
   return view;
 }
 
@@ -38,14 +61,18 @@ Box with_room(const Box& bounds) {
 
 }  // namespace
 
+glm::dvec3 forward_of(const Orbit& orbit) {
+  return {-std::sin(orbit.yaw_rad) * std::cos(orbit.pitch_rad), std::cos(orbit.yaw_rad) * std::cos(orbit.pitch_rad),
+          -std::sin(orbit.pitch_rad)};
+}
+
 View framed_view(const Box& bounds, const Orbit& orbit, std::uint32_t width_px, std::uint32_t height_px,
                  double fov_y_rad) {
   View view;
   view.width_px = width_px;
   view.height_px = height_px;
   view.fov_y_rad = fov_y_rad;
-  view.forward = glm::dvec3{-std::sin(orbit.yaw_rad) * std::cos(orbit.pitch_rad),
-                            std::cos(orbit.yaw_rad) * std::cos(orbit.pitch_rad), -std::sin(orbit.pitch_rad)};
+  view.forward = forward_of(orbit);
   view.up = glm::dvec3{0.0, 0.0, 1.0};
   return fitted(view, with_room(bounds));
 }

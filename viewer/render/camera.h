@@ -15,6 +15,9 @@ struct Orbit {
   double pitch_rad = 0.38;  ///< above the horizon
 };
 
+/// The unit direction that a camera on the orbit looks in.
+[[nodiscard]] glm::dvec3 forward_of(const Orbit& orbit);
+
 /// A view along the orbit direction, at the distance where `bounds` just fits with a margin of 6 %.
 [[nodiscard]] View framed_view(const Box& bounds, const Orbit& orbit, std::uint32_t width_px, std::uint32_t height_px,
                                double fov_y_rad = 0.6);

@@ -99,6 +99,20 @@ void Frame::end() const {
   gl_->disable(GL_FRAMEBUFFER_SRGB);
 }
 
+Image read_framebuffer(const Gl& gl, std::uint32_t width_px, std::uint32_t height_px) {
+  const std::size_t row_bytes = static_cast<std::size_t>(width_px) * 3;
+  std::vector<std::uint8_t> rows(row_bytes * height_px);
+  gl.pixel_store_i(GL_PACK_ALIGNMENT, 1);
+  gl.read_pixels(0, 0, static_cast<GLsizei>(width_px), static_cast<GLsizei>(height_px), GL_RGB, GL_UNSIGNED_BYTE,
+                 rows.data());
+  Image image{.width = width_px, .height = height_px, .channels = 3, .pixels = {}};
+  image.pixels.resize(rows.size());
+  for (std::uint32_t y = 0; y < height_px; ++y) {
+    std::memcpy(image.at(0, y), rows.data() + (height_px - 1 - y) * row_bytes, row_bytes);
+  }
+  return image;
+}
+
 Result<Presenter> Presenter::create(const Gl& gl) {
   auto program = Program::create(gl, picture_vertex_shader, nullptr, present_fragment_shader);
   if (!program) return program.error();
@@ -168,17 +182,7 @@ Image Presenter::read_blend(const Frame& first, const Frame& second, double shar
     gl_->framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
   }
   draw(first, second, share, framebuffer_);
-  std::vector<std::uint8_t> rows(static_cast<std::size_t>(width_px_) * height_px_ * 3);
-  gl_->pixel_store_i(GL_PACK_ALIGNMENT, 1);
-  gl_->read_pixels(0, 0, static_cast<GLsizei>(width_px_), static_cast<GLsizei>(height_px_), GL_RGB, GL_UNSIGNED_BYTE,
-                   rows.data());
-  Image image{.width = width_px_, .height = height_px_, .channels = 3, .pixels = {}};
-  image.pixels.resize(rows.size());
-  const std::size_t row_bytes = static_cast<std::size_t>(width_px_) * 3;
-  for (std::uint32_t y = 0; y < height_px_; ++y) {
-    std::memcpy(image.at(0, y), rows.data() + (height_px_ - 1 - y) * row_bytes, row_bytes);
-  }
-  return image;
+  return read_framebuffer(*gl_, width_px_, height_px_);
 }
 
 }  // namespace lodestone::render

@@ -47,6 +47,9 @@ class Frame {
   GLuint texture_ = 0;
 };
 
+/// The framebuffer bound for reading, as an upright RGB image.
+[[nodiscard]] Image read_framebuffer(const Gl& gl, std::uint32_t width_px, std::uint32_t height_px);
+
 /// Turns frames into the picture shown or kept.
 class Presenter {
  public:

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "app.h"
+
+#include <algorithm>
+
+#include <lodestone/formats.h>
+
+namespace lodestone::render {
+namespace {
+
+// A frame that took longer (a file was loading, the window was hidden) advances motion only by this much.
+constexpr double longest_step_s = 0.1;
+
+Sphere sphere_of(const Box& box) { return {.center = box.center(), .radius_m = box.diagonal_m() * 0.5}; }
+
+}  // namespace
+
+App::Shown::Shown(const Gl& gl, std::shared_ptr<const ProgressiveModel> m, double morph_seconds, Level level)
+    : model(std::move(m)),
+      cursor(model, {.motion = Motion::Morph, .morph_seconds = morph_seconds, .start_level = level}),
+      geometry(gl, arrays_of(cursor)) {
+  cursor.clear_dirty();
+}
+
+Result<std::unique_ptr<App>> App::create(const WindowOptions& options) {
+  auto window =
+      GlfwWindow::create("Lodestone", static_cast<int>(options.width_px), static_cast<int>(options.height_px));
+  if (!window) return window.error();
+  auto loaded = load_gl(GlfwWindow::address);
+  if (!loaded) return loaded.error();
+  auto gl = std::make_unique<Gl>(*loaded);
+  auto renderer = Renderer::create(*gl);
+  if (!renderer) return renderer.error();
+  auto presenter = Presenter::create(*gl);
+  if (!presenter) return presenter.error();
+  return std::unique_ptr<App>{new App{options, std::move(window).value(), std::move(gl), std::move(renderer).value(),
+                                      std::move(presenter).value()}};
+}
+
+App::App(const WindowOptions& options, std::unique_ptr<GlfwWindow> window, std::unique_ptr<Gl> gl, Renderer renderer,
+         Presenter presenter)
+    : options_(options),
+      window_(std::move(window)),
+      gl_(std::move(gl)),
+      renderer_(std::move(renderer)),
+      presenter_(std::move(presenter)),
+      panel_(window_->handle()) {
+  look_.wireframe = options.wireframe;
+  if (options.lod_colors) look_.coloring = Coloring::Lod;
+  if (options.file.empty()) {
+    message_ = "Drop a model here: .lode, OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...";
+  } else {
+    loader_.start(options.file);
+  }
+}
+
+Status App::run() {
+  using Clock = std::chrono::steady_clock;
+  auto last = Clock::now();
+  while (!window_->closing()) {
+    // Without anything that moves the loop idles at a few frames a second until there is input.
+    const bool moving = loader_.busy() || control_.mode == LevelMode::Sweep || still_frames_ < 10;
+    window_->gather_input(moving ? 0.0 : 0.2);
+    const auto now = Clock::now();
+    const double dt_s = std::min(std::chrono::duration<double>(now - last).count(), longest_step_s);
+    last = now;
+    if (auto status = take_loaded(); !status) return status;
+    use_input(dt_s);
+    if (auto status = draw_frame(); !status) return status;
+    if (!options_.screenshot.empty() && settled()) return write_screenshot();
+    window_->swap();
+  }
+  return Done{};
+}
+
+// A file named on the command line that cannot be read ends the program; one dropped on the window is only reported.
+Status App::take_loaded() {
+  auto result = loader_.take();
+  if (!result) return Done{};
+  if (!result->ok()) {
+    if (!shown_ && loader_.file() == options_.file) return result->error();
+    message_ = to_line(result->error());
+    return Done{};
+  }
+  message_.clear();
+  for (const Warning& warning : result->warnings()) {
+    message_ = std::to_string(result->warnings().size()) + " warnings, the first: " + to_line(warning);
+    break;
+  }
+  show(**result);
+  return Done{};
+}
+
+void App::show(const Loader::Model& model) {
+  const bool first = !shown_;
+  shown_.reset();
+  surfaces_ = std::make_unique<Surfaces>(*gl_, model->data());
+  shown_ = std::make_unique<Shown>(*gl_, model, static_cast<double>(morph_seconds_), model->record_count());
+  control_.attach(*model);
+  title_ = loader_.file().filename().string();
+  window_->set_title(title_ + " - Lodestone");
+  int width = 0;
+  int height = 0;
+  window_->framebuffer_size(width, height);
+  camera_.frame(model->bounds(), static_cast<std::uint32_t>(std::max(1, width)),
+                static_cast<std::uint32_t>(std::max(1, height)));
+  if (first && options_.ratio) {
+    const auto finest = static_cast<double>(model->info(model->record_count()).triangles);
+    control_.slider = control_.slider_of(static_cast<std::uint32_t>(*options_.ratio * finest));
+  }
+  if (first && options_.play) control_.mode = LevelMode::Sweep;
+}
+
+void App::use_input(double dt_s) {
+  const MouseDrag drag = window_->take_drag();
+  const double wheel = window_->take_wheel_notches();
+  if (!panel_.wants_mouse()) {
+    if (drag.left) camera_.turn(drag.dx_px, drag.dy_px);
+    if (drag.other) camera_.pan(drag.dx_px, drag.dy_px);
+    camera_.zoom(wheel);
+  }
+  if (drag.left || drag.other || wheel != 0.0) still_frames_ = 0;
+  if (const auto file = window_->take_dropped_file(); !file.empty()) loader_.start(file);
+  use_keys();
+  if (!shown_) return;
+  control_.drive(shown_->cursor, camera_.view(), dt_s);
+  const StepResult step = shown_->cursor.step({}, dt_s);
+  uploaded_kb_ = static_cast<double>(shown_->geometry.update(shown_->cursor)) / 1024.0;
+  still_frames_ = step.changed || !step.arrived ? 0 : still_frames_ + 1;
+}
+
+void App::use_keys() {
+  for (const char key : window_->take_typed()) {
+    still_frames_ = 0;
+    switch (key) {
+      case ' ':
+        control_.mode = control_.mode == LevelMode::Sweep ? LevelMode::Slider : LevelMode::Sweep;
+        break;
+      case '+':
+      case '-':
+        control_.mode = LevelMode::Slider;
+        control_.slider = std::clamp(control_.slider + (key == '+' ? 0.05F : -0.05F), 0.0F, 1.0F);
+        break;
+      case 'w':
+        look_.wireframe = !look_.wireframe;
+        break;
+      case 't':
+        look_.coloring = look_.coloring == Coloring::Materials ? Coloring::Untextured : Coloring::Materials;
+        break;
+      case 'l':
+        look_.coloring = look_.coloring == Coloring::Lod ? Coloring::Materials : Coloring::Lod;
+        break;
+      case 'f':
+        if (shown_) {
+          const View view = camera_.view();
+          camera_.frame(shown_->cursor.model().bounds(), view.width_px, view.height_px);
+        }
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+Status App::fit_frame_to_window() {
+  int width = 0;
+  int height = 0;
+  window_->framebuffer_size(width, height);
+  const FrameSize wanted{static_cast<std::uint32_t>(std::max(1, width)),
+                         static_cast<std::uint32_t>(std::max(1, height)), 1};
+  if (frame_ && frame_->size() == wanted) return Done{};
+  auto made = Frame::create(*gl_, wanted);
+  if (!made) return made.error();
+  frame_.emplace(std::move(made).value());
+  camera_.resize(wanted.width_px, wanted.height_px);
+  return Done{};
+}
+
+PanelResult App::lay_out_panel(const View& view) {
+  PanelState state{.control = control_, .look = look_, .morph_seconds = morph_seconds_, .frame_times = frame_times_};
+  state.title = title_;
+  state.message = message_;
+  if (loader_.busy()) {
+    state.loading = loader_.file().filename().string() + ": " + loader_.stage();
+    state.loading_fraction = loader_.fraction();
+  }
+  if (shown_) {
+    const Cursor& cursor = shown_->cursor;
+    state.cursor = &cursor;
+    state.screen_error_px = error_px(view, cursor.error_m(), sphere_of(cursor.model().bounds()));
+    state.uploaded_kb = uploaded_kb_;
+  }
+  return panel_.layout(state);
+}
+
+Status App::draw_frame() {
+  if (auto status = fit_frame_to_window(); !status) return status;
+  const auto start = std::chrono::steady_clock::now();
+  const View view = camera_.view();
+  Box bounds;
+  std::optional<Item> item;
+  if (shown_) {
+    bounds = shown_->cursor.model().bounds();
+    item = Item{.geometry = &shown_->geometry, .surfaces = surfaces_.get(), .size_m = bounds.diagonal_m()};
+  }
+  renderer_.draw(*frame_, view, bounds, item ? std::span<const Item>{&*item, 1} : std::span<const Item>{}, look_);
+  const PanelResult asked = lay_out_panel(view);
+  presenter_.present(*frame_, 0);
+  panel_.draw();
+  gl_->finish();
+  frame_times_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  if (asked.frame_model) camera_.frame(bounds, view.width_px, view.height_px);
+  if (asked.restart_cursor && shown_) {
+    // The time of a morph is fixed at construction: a new cursor goes on where the old one is.
+    shown_ = std::make_unique<Shown>(*gl_, shown_->model, static_cast<double>(morph_seconds_), shown_->cursor.level());
+  }
+  return Done{};
+}
+
+bool App::settled() const { return shown_ && !loader_.busy() && still_frames_ >= 3; }
+
+Status App::write_screenshot() {
+  const FrameSize& size = frame_->size();
+  gl_->bind_framebuffer(GL_FRAMEBUFFER, 0);
+  return write_image(read_framebuffer(*gl_, size.width_px, size.height_px), options_.screenshot);
+}
+
+Status run_window(const WindowOptions& options) {
+  auto app = App::create(options);
+  if (!app) return app.error();
+  return (*app)->run();
+}
+
+}  // namespace lodestone::render

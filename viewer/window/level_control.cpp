@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "level_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::render {
+
+void LevelControl::attach(const ProgressiveModel& model) {
+  finest_log_ = std::log(std::max(1.0, double(model.info(model.record_count()).triangles)));
+  base_log_ = std::log(std::max(1.0, double(model.info(0).triangles)));
+  slider = 1.0F;
+}
+
+float LevelControl::slider_of(std::uint32_t triangles) const {
+  if (finest_log_ <= base_log_) return 1.0F;
+  const double place = (std::log(std::max(1.0, double(triangles))) - base_log_) / (finest_log_ - base_log_);
+  return static_cast<float>(std::clamp(place, 0.0, 1.0));
+}
+
+std::uint32_t LevelControl::triangles_of(float at) const {
+  return static_cast<std::uint32_t>(std::lround(std::exp(base_log_ + (finest_log_ - base_log_) * double(at))));
+}
+
+void LevelControl::drive(Cursor& cursor, const View& view, double dt_s) {
+  if (mode == LevelMode::Automatic) {
+    cursor.set_target(Target::pixels(view, double(max_error_px)));
+    slider = slider_of(cursor.triangle_count());
+    return;
+  }
+  if (mode == LevelMode::Sweep) {
+    double place = double(slider) + direction_ * dt_s * 2.0 / std::max(0.1, double(sweep_s));
+    if (place <= 0.0 || place >= 1.0) direction_ = place <= 0.0 ? 1.0 : -1.0;
+    place = std::clamp(place, 0.0, 1.0);
+    slider = static_cast<float>(place);
+  }
+  // At the upper end exactly the source, whatever rounding says.
+  cursor.set_target(slider >= 1.0F ? Target::level(cursor.model().record_count())
+                                   : Target::triangles(triangles_of(slider)));
+}
+
+}  // namespace lodestone::render

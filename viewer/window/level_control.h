@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// What decides the level: a slider, a sweep that plays, or the camera's distance.
+#pragma once
+
+#include <array>
+
+#include <lodestone/cursor.h>
+
+namespace lodestone::render {
+
+enum class LevelMode : std::uint8_t { Slider, Sweep, Automatic };
+
+/// Slider positions are logarithmic in triangles: equal moves change the count by equal factors. 1 = finest, 0 = base.
+class LevelControl {
+ public:
+  void attach(const ProgressiveModel& model);
+
+  LevelMode mode = LevelMode::Slider;
+  float slider = 1.0F;        ///< 0..1
+  float max_error_px = 1.0F;  ///< Automatic
+  float sweep_s = 12.0F;      ///< Sweep: time from one end to the other and back
+
+  [[nodiscard]] float slider_of(std::uint32_t triangles) const;
+  [[nodiscard]] std::uint32_t triangles_of(float slider) const;
+
+  /// Sets the cursor's target for this frame. Sweep moves the slider; Automatic takes the camera.
+  void drive(Cursor& cursor, const View& view, double dt_s);
+
+ private:
+  double finest_log_ = 0.0;
+  double base_log_ = 0.0;
+  double direction_ = -1.0;
+};
+
+/// The last few seconds of frame times, for the graph.
+class FrameTimes {
+ public:
+  void add(double seconds) {
+    ms_[next_] = static_cast<float>(seconds * 1e3);
+    next_ = (next_ + 1) % ms_.size();
+  }
+  [[nodiscard]] const std::array<float, 240>& ms() const { return ms_; }
+  [[nodiscard]] std::size_t oldest() const { return next_; }
+  [[nodiscard]] float latest_ms() const { return ms_[(next_ + ms_.size() - 1) % ms_.size()]; }
+
+ private:
+  std::array<float, 240> ms_{};
+  std::size_t next_ = 0;
+};
+
+}  // namespace lodestone::render

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Opens files beside the frame loop: .lode files as they are, anything else is read and made into a model on the fly.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <lodestone/progressive_model.h>
+#include <lodestone/result.h>
+
+namespace lodestone::render {
+
+class Loader {
+ public:
+  using Model = std::shared_ptr<const ProgressiveModel>;
+  ~Loader();
+
+  /// Gives up what is under way and starts on `file`.
+  void start(const std::filesystem::path& file);
+  /// The result, once, when it is there.
+  [[nodiscard]] std::optional<Result<Model>> take();
+
+  [[nodiscard]] bool busy() const { return busy_; }
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] std::string stage() const;
+  [[nodiscard]] float fraction() const { return fraction_; }
+
+ private:
+  void stop();
+  void load();
+
+  std::filesystem::path file_;
+  std::thread worker_;
+  std::atomic<bool> cancel_ = false;
+  std::atomic<bool> busy_ = false;
+  std::atomic<float> fraction_ = 0.0F;
+  mutable std::mutex mutex_;  ///< guards the two below
+  std::string stage_;
+  std::optional<Result<Model>> result_;
+};
+
+}  // namespace lodestone::render

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Program lodestone-view.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "window.h"
+
+namespace {
+
+constexpr int wrong_arguments = 1;
+constexpr int bad_data = 2;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  lodestone::render::WindowOptions options;
+  CLI::App app{
+      "Shows a model at any level of detail; any mesh is made into a progressive model on opening.\n"
+      "Example: lodestone-view house.lode"};
+  double ratio = 0.0;
+  app.add_option("file", options.file, "model (.lode) or mesh (OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...)");
+  const auto* ratio_option =
+      app.add_option("--ratio", ratio, "go to this share of the triangles")->check(CLI::Range(0.0, 1.0));
+  app.add_option("--width", options.width_px, "window's width in pixels")->check(CLI::Range(200, 16384));
+  app.add_option("--height", options.height_px, "window's height in pixels")->check(CLI::Range(200, 16384));
+  app.add_option("--screenshot", options.screenshot, "write the window as PNG once the level is reached, and close");
+  app.add_flag("--play", options.play, "start sweeping through the levels");
+  app.add_flag("--wireframe", options.wireframe, "draw triangle edges");
+  app.add_flag("--lod-colors", options.lod_colors, "colour by triangle size");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : wrong_arguments;
+  }
+  if (*ratio_option) options.ratio = ratio;
+  const auto status = lodestone::render::run_window(options);
+  if (status) return 0;
+  std::fprintf(stderr, "lodestone-view: %s\n", lodestone::to_line(status.error()).c_str());
+  return bad_data;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The window: slider over levels, orbit, wireframe, LOD colours, sweep, automatic level. No GL, GLFW or Dear ImGui name
+// is visible here.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <lodestone/result.h>
+
+namespace lodestone::render {
+
+struct WindowOptions {
+  std::filesystem::path file;  ///< opened first; empty: the window waits for a file to be dropped on it
+  std::uint32_t width_px = 1280;
+  std::uint32_t height_px = 800;
+  /// Share of the triangles to go to once the model is there; the slider moves with it.
+  std::optional<double> ratio;
+  /// Written, panel and all, once the model has arrived at its level; the window closes then.
+  std::filesystem::path screenshot;
+  bool play = false;  ///< start the sweep
+  bool wireframe = false;
+  bool lod_colors = false;
+};
+
+/// Shows the window until it is closed. Errors: Unsupported without a display or OpenGL 3.3; what reading `file` gave
+/// (a file dropped later that cannot be read is reported in the window).
+[[nodiscard]] Status run_window(const WindowOptions& options);
+
+}  // namespace lodestone::render
