@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#include "doors.h"
+
+LODESTONE_MESH_DOOR("fuzz.dat")
