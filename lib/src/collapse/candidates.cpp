@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// Based on: Lindstrom and Turk 1998 (memoryless volume and border costs).
+// Differs: the cost of an edge is estimated from the sums of its two ends, faces at both counted twice; the exact cost
+// is taken only for the edges that are tried (collapser.cpp).
+#include "collapse/candidates.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "collapse/weights.h"
+
+namespace lodestone::collapse {
+namespace {
+
+constexpr std::size_t point_chunk = 8192;
+constexpr std::size_t face_chunk = 8192;
+constexpr std::uint32_t histogram_shift = 19;  // 4096 bins: sign, exponent, 4 bits of mantissa
+
+// The other two points of the faces around one point, in the order of the faces.
+struct Around {
+  std::vector<std::uint32_t> next, previous;
+};
+
+// Edges that do not have one face on either side: adds their lines and tells what kind of point this is.
+std::uint8_t add_lines(const WorkingMesh& mesh, const Around& around, const glm::dvec3& at, Symmetric3& quadric) {
+  std::uint32_t border = 0;
+  bool complex = false;
+  const auto count = [](const std::vector<std::uint32_t>& list, std::uint32_t p) {
+    return std::count(list.begin(), list.end(), p);
+  };
+  const auto visit = [&](std::uint32_t p) {
+    const auto out = count(around.next, p);
+    const auto in = count(around.previous, p);
+    if (out == 1 && in == 1) return;
+    if (out + in == 1) {
+      ++border;
+    } else {
+      complex = true;
+    }
+    const glm::dvec3 d = glm::dvec3{mesh.position[p]} - at;
+    quadric.add_line(d, line_weight * glm::dot(d, d));
+  };
+  for (std::size_t i = 0; i < around.next.size(); ++i) {
+    const auto seen = around.next.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(around.next.begin(), seen, *seen) == seen) visit(*seen);
+  }
+  for (std::size_t i = 0; i < around.previous.size(); ++i) {
+    const auto seen = around.previous.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(around.previous.begin(), seen, *seen) == seen && count(around.next, *seen) == 0) visit(*seen);
+  }
+  if (complex || border > 2) return point_complex;
+  return border == 0 ? 0 : point_border;
+}
+
+bool closed_ring(const Around& around) {
+  for (std::size_t i = 0; i < around.next.size(); ++i) {
+    std::uint32_t out = 0;
+    std::uint32_t in = 0;
+    for (std::size_t j = 0; j < around.next.size(); ++j) {
+      out += around.next[j] == around.next[i] ? 1U : 0U;
+      in += around.previous[j] == around.next[i] ? 1U : 0U;
+    }
+    if (out != 1 || in != 1) return false;
+  }
+  return true;
+}
+
+struct Estimator {
+  const WorkingMesh& mesh;
+  const std::vector<Symmetric3>& quadrics;
+
+  template <Placement placement>
+  [[nodiscard]] float cost(std::uint32_t u, std::uint32_t v) const {
+    const glm::dvec3 e = glm::dvec3{mesh.position[v]} - glm::dvec3{mesh.position[u]};
+    const Symmetric3& mu = quadrics[u];
+    const Symmetric3& mv = quadrics[v];
+    const glm::dvec3 b = mv * e;
+    const double at_u = glm::dot(e, b);
+    const double trace = mu.trace() + mv.trace();
+    double cost = 0.0;
+    if constexpr (placement == Placement::EndPoint || placement == Placement::Subset) {
+      cost = std::min(at_u, mu.form(e));
+    } else if constexpr (placement == Placement::Midpoint) {
+      cost = 0.25 * (at_u + mu.form(e));
+    } else {
+      const double at_v = mu.form(e);
+      if constexpr (placement == Placement::OnEdge) {
+        cost = at_u + at_v > 0.0 ? at_u * at_v / (at_u + at_v) : 0.0;
+      } else {
+        Symmetric3 m = mu + mv;
+        m.add_isotropic(middle_weight * trace + 1e-300);
+        const Solver3 solve{m};
+        const glm::dvec3 y = solve(b + (0.5 * middle_weight * trace) * e);
+        cost = solve.valid() ? at_u - 2.0 * glm::dot(b, y) + (mu + mv).form(y) : std::min(at_u, at_v);
+      }
+    }
+    cost += length_weight * trace * glm::dot(e, e);
+    return static_cast<float>(std::clamp(cost, 0.0, 1e38));
+  }
+};
+
+template <Placement placement>
+void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics,
+              std::vector<std::vector<Candidate>>& out, const Context& context) {
+  const Estimator estimator{mesh, quadrics};
+  parallel_chunks(mesh.faces.size(), face_chunk, context, [&](std::size_t begin, std::size_t end) {
+    std::vector<Candidate>& list = out[begin / face_chunk];
+    list.reserve((end - begin) * 2);
+    for (std::size_t i = begin; i != end; ++i) {
+      const Face& f = mesh.faces[i];
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t u = f.point[k];
+        const std::uint32_t v = f.point[k == 2 ? 0 : k + 1];
+        // Where both ends are manifold the face on the other side has the edge the other way round.
+        const auto both = static_cast<std::uint8_t>(mesh.flags[u] | mesh.flags[v]);
+        if (u > v && (mesh.flags[u] & mesh.flags[v] & (point_border | point_complex)) == 0) continue;
+        if ((both & point_frozen) != 0 && (mesh.flags[u] & mesh.flags[v] & point_frozen) != 0) continue;
+        list.push_back({std::bit_cast<std::uint32_t>(estimator.cost<placement>(u, v)), std::min(u, v), std::max(u, v)});
+      }
+    }
+  });
+}
+
+}  // namespace
+
+std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const EdgeCollapseOptions& options, const Context& context) {
+  std::vector<Symmetric3> quadrics(mesh.point_count());
+  parallel_chunks(mesh.point_count(), point_chunk, context, [&](std::size_t begin, std::size_t end) {
+    Around around;
+    for (std::size_t p = begin; p != end; ++p) {
+      around.next.clear();
+      around.previous.clear();
+      Symmetric3 quadric;
+      const glm::dvec3 at{mesh.position[p]};
+      for (std::uint32_t i = mesh.first[p]; i != mesh.first[p + 1]; ++i) {
+        const std::uint32_t k = mesh.corners[i] & 3U;
+        const Face& f = mesh.faces[mesh.corners[i] >> 2U];
+        const std::uint32_t next = f.point[k == 2 ? 0 : k + 1];
+        const std::uint32_t previous = f.point[k == 0 ? 2 : k - 1];
+        around.next.push_back(next);
+        around.previous.push_back(previous);
+        quadric.add_plane(glm::cross(glm::dvec3{mesh.position[next]} - at, glm::dvec3{mesh.position[previous]} - at));
+      }
+      std::uint8_t flags = mesh.flags[p] & point_frozen;
+      if (!closed_ring(around)) flags |= add_lines(mesh, around, at, quadric);
+      if (options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
+      mesh.flags[p] = flags;
+      quadrics[p] = quadric;
+    }
+  });
+  return quadrics;
+}
+
+Candidates find_candidates(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement,
+                           double share, const Context& context) {
+  std::vector<std::vector<Candidate>> lists((mesh.faces.size() + face_chunk - 1) / face_chunk);
+  switch (placement) {
+    case Placement::Optimal:
+      estimate<Placement::Optimal>(mesh, quadrics, lists, context);
+      break;
+    case Placement::OnEdge:
+      estimate<Placement::OnEdge>(mesh, quadrics, lists, context);
+      break;
+    case Placement::Midpoint:
+      estimate<Placement::Midpoint>(mesh, quadrics, lists, context);
+      break;
+    case Placement::EndPoint:
+    case Placement::Subset:
+      estimate<Placement::Subset>(mesh, quadrics, lists, context);
+      break;
+  }
+  Candidates result;
+  std::vector<std::uint32_t> histogram(std::size_t{1} << (32 - histogram_shift), 0);
+  for (const auto& list : lists) {
+    result.edge_count += list.size();
+    for (const Candidate& c : list) ++histogram[c.key >> histogram_shift];
+  }
+  const auto wanted = static_cast<std::size_t>(std::ceil(share * static_cast<double>(result.edge_count)));
+  std::uint32_t bin = 0;
+  std::size_t below = 0;
+  while (bin < histogram.size() && below < wanted) below += histogram[bin++];
+  const std::uint32_t limit = bin == histogram.size() ? none : bin << histogram_shift;
+  result.threshold = limit == none ? std::numeric_limits<float>::infinity() : std::bit_cast<float>(limit);
+  result.edges.reserve(below);
+  for (const auto& list : lists) {
+    for (const Candidate& c : list) {
+      if (c.key < limit) result.edges.push_back(c);
+    }
+  }
+  return result;
+}
+
+}  // namespace lodestone::collapse

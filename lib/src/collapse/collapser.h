@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Tries one edge collapse after another, changes the working mesh and logs what it did.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collapse/pass_log.h"
+#include "collapse/placement.h"
+#include "collapse/star.h"
+#include "collapse/wedges.h"
+#include "collapse/working_mesh.h"
+
+namespace lodestone::collapse {
+
+// Why an edge did not collapse.
+enum class Refusal : std::uint8_t { None, Busy, Outside, Seam, Border, Flip, Link, Frozen, Cost };
+inline constexpr std::size_t refusal_count = 9;
+
+// What all regions of a pass share.
+struct PassState {
+  WorkingMesh& mesh;
+  const Mesh& source;
+  const EdgeCollapseOptions& options;
+  double diagonal_m = 0.0;
+  double cost_limit = 0.0;
+  bool looks_matter = false;            // there are seams or several materials
+  bool relaxed = false;                 // seams may be left where nothing else is possible
+  std::vector<std::uint32_t> stamps;    // per point
+  std::vector<std::uint32_t> last_key;  // per point: key of the last record that touched it
+};
+
+// Works on the points of one region only; regions are disjoint, so several may run at once.
+class Collapser {
+ public:
+  Collapser(PassState& state, Range region, PassLog& log)
+      : state_(state), region_(region), log_(log), wedges_(state.mesh, state.source, state.options, state.diagonal_m) {}
+
+  // `key` orders the record in the log; a later record that depends on it gets at least the same key.
+  Refusal attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key);
+
+ private:
+  [[nodiscard]] Refusal check_topology();
+  [[nodiscard]] bool link_holds();
+  [[nodiscard]] bool apexes_stay() const;
+  void find_lines();
+  [[nodiscard]] Refusal choose_ends();
+  [[nodiscard]] Refusal choose_place();
+  [[nodiscard]] bool try_place(const glm::dvec3& y);
+  void commit(std::uint32_t key);
+  [[nodiscard]] float error_m() const;
+
+  PassState& state_;
+  Range region_;
+  PassLog& log_;
+  Wedges wedges_;
+  Star star_;
+  StarQuadric quadric_;
+  bool u_may_go_ = false, v_may_go_ = false;
+  Choice choice_;
+  std::uint32_t stamp_ = 0;
+};
+
+}  // namespace lodestone::collapse

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Based on: Lindstrom and Turk 1998, sections 3.2 to 3.4 (volume preservation, volume and boundary optimisation).
+// Differs: one regularised system instead of a chain of constraints that are added while they are independent: a weak
+// pull towards the middle of the edge decides where flat or straight surroundings leave the place open. Borders enter
+// as lines with a fixed weight, so that borders, seams, sharp edges and contacts of three faces are one thing.
+#include "collapse/placement.h"
+
+#include "collapse/weights.h"
+
+namespace lodestone::collapse {
+namespace {
+
+// The minimum under the volume constraint, which holds only where the surface is closed around the edge.
+glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
+  Symmetric3 a = quadric.a;
+  const double pull = middle_weight * quadric.a.trace() + 1e-300;
+  a.add_isotropic(pull);
+  const Solver3 solve{a};
+  if (!solve.valid()) return 0.5 * star.e;
+  const glm::dvec3 free = solve(quadric.b + (0.5 * pull) * star.e);
+  if (!star.plain) return free;
+  const glm::dvec3 along = solve(quadric.volume_normal);
+  const double slope = glm::dot(quadric.volume_normal, along);
+  // A star that folds back on itself has hardly any volume normal: there the constraint would throw the vertex far
+  // away.
+  if (slope * a.trace() < 1e-3 * glm::dot(quadric.volume_normal, quadric.volume_normal)) return free;
+  return free + along * ((quadric.volume - glm::dot(quadric.volume_normal, free)) / slope);
+}
+
+}  // namespace
+
+StarQuadric sum_star(const Star& star) {
+  StarQuadric sum;
+  for (const StarFace& f : star.faces) {
+    sum.a.add_plane(f.normal);
+    sum.weight += glm::dot(f.normal, f.normal);
+    sum.volume_normal += f.normal;
+    if (f.side != Side::V) continue;
+    const double t = glm::dot(f.normal, star.e);
+    sum.b += f.normal * t;
+    sum.c += t * t;
+    sum.volume += t;
+  }
+  for (const StarLine& line : star.lines) {
+    const double length2 = glm::dot(line.direction, line.direction);
+    Symmetric3 m;
+    m.add_line(line.direction, line_weight * length2);
+    sum.a += m;
+    sum.weight += line_weight * length2 * length2;
+    if (line.from == star.u) continue;
+    const glm::dvec3 b = m * star.e;
+    sum.b += b;
+    sum.c += glm::dot(b, star.e);
+  }
+  return sum;
+}
+
+glm::dvec3 best_place(const Star& star, const StarQuadric& quadric, Placement placement) {
+  switch (placement) {
+    case Placement::Optimal:
+      return optimum(star, quadric);
+    case Placement::OnEdge: {
+      const double square = quadric.a.form(star.e);
+      const double t = square > 0.0 ? glm::dot(quadric.b, star.e) / square : 0.5;
+      return star.e * std::clamp(t, 0.0, 1.0);
+    }
+    case Placement::Midpoint:
+      return 0.5 * star.e;
+    case Placement::EndPoint:
+    case Placement::Subset:
+      break;
+  }
+  return quadric.cost(star.e) < quadric.cost(glm::dvec3{0.0}) ? star.e : glm::dvec3{0.0};
+}
+
+bool keeps_orientation(const Star& star, const glm::dvec3& y) {
+  for (const StarFace& f : star.faces) {
+    if (f.side == Side::Both) continue;
+    const glm::dvec3 normal = glm::cross(f.at_a - y, f.at_b - y);
+    const double before = glm::dot(f.normal, f.normal);
+    const double after = glm::dot(normal, normal);
+    const double turn = glm::dot(f.normal, normal);
+    if (before > 0.0 && (turn <= 0.0 || turn * turn < flip_cosine * flip_cosine * before * after)) return false;
+  }
+  return true;
+}
+
+}  // namespace lodestone::collapse

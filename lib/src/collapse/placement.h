@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Where the vertex goes that an edge collapses into, and what that costs.
+#pragma once
+
+#include "collapse/star.h"
+#include "collapse/symmetric3.h"
+
+namespace lodestone::collapse {
+
+// Sum over the faces and lines of a star of weighted squared distance, each once:
+// cost(y) = y A y - 2 b y + c, y relative to u.
+struct StarQuadric {
+  Symmetric3 a;
+  glm::dvec3 b{0.0};
+  double c = 0.0;
+  double weight = 0.0;            // sum of the weights: cost / weight is a mean squared distance
+  glm::dvec3 volume_normal{0.0};  // places with volume_normal * y == volume keep the volume
+  double volume = 0.0;
+
+  [[nodiscard]] double cost(const glm::dvec3& y) const noexcept {
+    return std::max(a.form(y) - 2.0 * glm::dot(b, y) + c, 0.0);
+  }
+};
+[[nodiscard]] StarQuadric sum_star(const Star& star);
+
+// The best place that `placement` allows, relative to u.
+[[nodiscard]] glm::dvec3 best_place(const Star& star, const StarQuadric& quadric, Placement placement);
+
+// True if no face that stays would turn too far or lose its area when both ends go to y.
+[[nodiscard]] bool keeps_orientation(const Star& star, const glm::dvec3& y);
+
+}  // namespace lodestone::collapse

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include <bit>
+#include <cstring>
+
+#include <lodestone/edge_collapse.h>
+
+#include "collapse/engine.h"
+
+namespace lodestone {
+namespace {
+
+// Applies records to a mesh instead of keeping them.
+class MeshSink final : public collapse::Sink {
+ public:
+  explicit MeshSink(const Mesh& source) : mesh_(source), gone_(source.triangle_count(), 0) {}
+
+  void record(const collapse::Edit& edit) override {
+    for (const FaceId f : edit.faces) gone_[f] = 1;
+    for (const auto& [corner, to] : edit.corners) mesh_.indices[corner] = to;
+    const std::size_t words = edit.moved.empty() ? 0 : edit.values.size() / edit.moved.size();
+    for (std::size_t i = 0; i < edit.moved.size(); ++i) move(edit.moved[i], edit.values.data() + i * words);
+    error_m_ = std::max(error_m_, double{edit.error_m});
+  }
+
+  [[nodiscard]] double error_m() const noexcept { return error_m_; }
+
+  [[nodiscard]] Mesh take() {
+    std::size_t kept = 0;
+    for (std::size_t f = 0; f < gone_.size(); ++f) {
+      if (gone_[f] != 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) mesh_.indices[3 * kept + k] = mesh_.indices[3 * f + k];
+      if (!mesh_.face_materials.empty()) mesh_.face_materials[kept] = mesh_.face_materials[f];
+      if (!mesh_.face_features.empty()) mesh_.face_features[kept] = mesh_.face_features[f];
+      ++kept;
+    }
+    mesh_.indices.resize(3 * kept);
+    if (!mesh_.face_materials.empty()) mesh_.face_materials.resize(kept);
+    if (!mesh_.face_features.empty()) mesh_.face_features.resize(kept);
+    remove_unused(mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  void move(VertexId v, const std::uint32_t* words) {
+    VertexArrays& values = mesh_.vertices;
+    const auto take = [&](auto& value) {
+      std::memcpy(&value, words, sizeof value);
+      words += sizeof value / 4;
+    };
+    take(values.positions[v]);
+    if (!values.normals.empty()) take(values.normals[v]);
+    if (!values.uvs.empty()) take(values.uvs[v]);
+    if (!values.colors.empty()) take(values.colors[v]);
+  }
+
+  Mesh mesh_;
+  std::vector<std::uint8_t> gone_;
+  double error_m_ = 0.0;
+};
+
+}  // namespace
+
+Result<SimplifyResult> simplify(const Mesh& mesh, const EdgeCollapseOptions& options, const Context& context) {
+  if (Status status = collapse::check(mesh, options); !status.ok()) return status.error();
+  MeshSink sink{mesh};
+  SimplifyResult result;
+  result.report = collapse::run(mesh, options, context, sink);
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "simplification was cancelled", ""};
+  result.error_m = sink.error_m();
+  result.mesh = sink.take();
+  return result;
+}
+
+}  // namespace lodestone

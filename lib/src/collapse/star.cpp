@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "collapse/star.h"
+
+namespace lodestone::collapse {
+namespace {
+
+bool inside(Range region, std::uint32_t p) { return p - region.begin < region.end - region.begin; }
+
+// Adds the faces at one end; those on the edge only when seen from u.
+bool add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Range region, Star& star) {
+  const glm::dvec3 origin{mesh.position[star.u]};
+  const glm::dvec3 at_near = is_u ? glm::dvec3{0.0} : star.e;
+  for (std::uint32_t i = mesh.first[near]; i != mesh.first[near + 1]; ++i) {
+    const std::uint32_t index = mesh.corners[i] >> 2U;
+    const std::uint32_t k = mesh.corners[i] & 3U;
+    const Face& f = mesh.faces[index];
+    if (f.id == none) continue;
+    StarFace face;
+    face.a = f.point[k == 2 ? 0 : k + 1];
+    face.b = f.point[k == 0 ? 2 : k - 1];
+    const std::uint32_t far = is_u ? star.v : star.u;
+    const bool shared = face.a == far || face.b == far;
+    if (shared && !is_u) continue;
+    if (!inside(region, face.a) || !inside(region, face.b)) return false;
+    face.index = index;
+    face.k = k;
+    face.side = shared ? Side::Both : is_u ? Side::U : Side::V;
+    star.shared += shared ? 1U : 0U;
+    face.at_a = glm::dvec3{mesh.position[face.a]} - origin;
+    face.at_b = glm::dvec3{mesh.position[face.b]} - origin;
+    face.normal = glm::cross(face.at_a - at_near, face.at_b - at_near);
+    star.faces.push_back(face);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Range region, Star& star) {
+  star.u = u;
+  star.v = v;
+  star.e = glm::dvec3{mesh.position[v]} - glm::dvec3{mesh.position[u]};
+  star.faces.clear();
+  star.lines.clear();
+  star.shared = 0;
+  star.plain = ((mesh.flags[u] | mesh.flags[v]) & (point_border | point_complex | point_line)) == 0;
+  if (!add_faces(mesh, u, true, region, star)) return false;
+  star.faces_of_u = static_cast<std::uint32_t>(star.faces.size());
+  if (!add_faces(mesh, v, false, region, star)) return false;
+  star.faces_of_v = static_cast<std::uint32_t>(star.faces.size()) - star.faces_of_u + star.shared;
+  return true;
+}
+
+}  // namespace lodestone::collapse

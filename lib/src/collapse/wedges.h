@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// What becomes of the vertices (wedges) of a collapse: which merge, which move along, and their attributes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "collapse/pass_log.h"
+#include "collapse/star.h"
+#include "collapse/working_mesh.h"
+
+namespace lodestone::collapse {
+
+// A collapse that may be done: `gone` merges into `kept`, which moves to `place`.
+struct Choice {
+  std::uint32_t gone = 0, kept = 0;
+  glm::vec3 place{0.0F};     // as stored
+  glm::dvec3 relative{0.0};  // the same relative to u
+  double cost = 0.0;         // of the geometry
+  bool moves = false;        // kept does not stay where it was
+};
+
+class Wedges {
+ public:
+  Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions& options, double diagonal_m);
+
+  // True if two vertices of one point have the same uv and colour. Normals do not make seams.
+  [[nodiscard]] bool same_look(VertexId a, VertexId b) const;
+
+  // True if every look (material, uv, colour) that faces have at `gone` also occurs there on a face at the edge.
+  [[nodiscard]] bool stays_on_seam(const Star& star, std::uint32_t gone) const;
+
+  // Pairs the vertices for the choice, finds new values and returns what the change of looks costs, in the unit of the
+  // geometric cost.
+  double plan(const Star& star, const Choice& choice);
+
+  // Logs the planned edit, without begin and end, and changes the working mesh's vertices.
+  void commit(const Star& star, const Choice& choice, PassLog& log);
+
+ private:
+  struct Group {
+    VertexId vertex = none;  // survivor
+    bool moves = false;
+    glm::dvec3 normal{0.0};
+    glm::dvec2 uv{0.0};
+    glm::dvec4 color{0.0};
+    glm::dvec3 face_normals{0.0};
+    double weight = 0.0;
+    bool of_gone = false;  // a vertex of the point that goes, without a partner
+    bool flat = true;      // carried the normal of each of its faces
+  };
+  struct Pair {
+    VertexId from = none, to = none;
+  };
+
+  struct Dead {
+    VertexId vertex = none;
+    std::uint32_t point = none;  // where it was
+  };
+
+  [[nodiscard]] bool steered() const noexcept;
+  [[nodiscard]] VertexId target_of(VertexId vertex) const;
+  Group& group_of(VertexId vertex);
+  void make_pairs(const Star& star, const Choice& choice);
+  void predict(const Star& star, const Choice& choice);
+  [[nodiscard]] double residual(const Star& star, const Choice& choice);
+  void log_move(VertexId vertex, const glm::vec3& position, PassLog& log);
+  void finish(Group& group, const Choice& choice);
+  void store(const Group& group);
+  void commit_single(const Star& star, const Choice& choice, PassLog& log);
+  [[nodiscard]] VertexId heir(const Star& star, const Choice& choice, const Dead& dead) const;
+  void turn_flat_normals(const Star& star, const Choice& choice, PassLog& log);
+  [[nodiscard]] VertexId any_vertex_at(std::uint32_t point) const;
+
+  WorkingMesh& mesh_;
+  const Mesh& source_;
+  const EdgeCollapseOptions& options_;
+  double uv_scale_, normal_scale_, color_scale_;
+  std::vector<Pair> pairs_;
+  std::vector<Group> groups_;
+  std::vector<Dead> dead_;
+};
+
+}  // namespace lodestone::collapse

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The mesh while it shrinks: faces between corner points in flat arrays that are compacted between passes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <lodestone/edge_collapse.h>
+
+namespace lodestone::collapse {
+
+// A live face; `id` names it in the source, `none` once it is gone. Corner k is corner 3 * id + k of the source.
+struct Face {
+  std::array<std::uint32_t, 3> point{};
+  FaceId id = none;
+};
+
+enum PointFlag : std::uint8_t {
+  point_border = 1,   // on edges with one face only, otherwise manifold
+  point_complex = 2,  // non-manifold, or two sheets touch
+  point_line = 4,     // on a seam, material border or sharp edge
+  point_frozen = 8,   // never moves, never goes
+  point_locked = 16,  // taken part in a collapse of this pass
+};
+
+[[nodiscard]] inline std::uint32_t corner_at(const Face& f, std::uint32_t point) noexcept {
+  return f.point[0] == point ? 0 : f.point[1] == point ? 1 : 2;
+}
+
+struct WorkingMesh {
+  std::vector<Face> faces;
+  std::vector<glm::vec3> position;     // per point
+  std::vector<float> deviation_m;      // per point: of the surface around it from the source
+  std::vector<std::uint8_t> flags;     // per point: PointFlag
+  std::vector<std::uint32_t> part;     // per point: connected part; empty if there is one
+  std::vector<VertexId> wedge;         // per point: the vertex there; empty if some point has several
+  std::vector<std::uint32_t> first;    // per point, and one past the end: where its corners begin in `corners`
+  std::vector<std::uint32_t> corners;  // 4 * position in faces + 0..2, ascending
+
+  // Where points have several vertices (seams):
+  std::vector<VertexId> corner_vertex;     // per corner of the source
+  std::vector<std::uint32_t> vertex_uses;  // per vertex: live corners that name it
+  VertexArrays values;                     // current normals, uvs and colours of the source's vertices; no positions
+
+  std::uint32_t part_count = 1;
+
+  [[nodiscard]] std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(position.size()); }
+  [[nodiscard]] bool has_seams() const noexcept { return wedge.empty(); }
+  [[nodiscard]] VertexId vertex_of(const Face& f, std::uint32_t k) const noexcept {
+    return wedge.empty() ? corner_vertex[3 * std::size_t{f.id} + k] : wedge[f.point[k]];
+  }
+};
+
+// Points in Morton order, so that neighbours in space are neighbours in memory; faces by their first point. Faces with
+// two corners on one point are left out: their ids are returned.
+struct WorkingMeshStart {
+  WorkingMesh mesh;
+  std::vector<FaceId> degenerate;
+};
+[[nodiscard]] WorkingMeshStart make_working_mesh(const Mesh& source, const EdgeCollapseOptions& options,
+                                                 const Context& context);
+
+// Drops dead faces and, when many are gone, unused points; rebuilds `first` and `corners`.
+void compact(WorkingMesh& mesh, const Context& context);
+
+}  // namespace lodestone::collapse
