@@ -40,6 +40,22 @@ namespace {
 
 constexpr double error_step_ratio = 1.0019;
 
+// Sorts stably by `key`. Records are small, and std::stable_sort allocates each time.
+template <class T, class Key>
+void sort_by(std::vector<T>& array, Key key) {
+  constexpr std::size_t small = 32;
+  if (array.size() > small) {
+    std::stable_sort(array.begin(), array.end(), [&](const T& a, const T& b) { return key(a) < key(b); });
+    return;
+  }
+  for (std::size_t i = 1; i < array.size(); ++i) {
+    const T element = array[i];
+    std::size_t at = i;
+    for (; at > 0 && key(element) < key(array[at - 1]); --at) array[at] = array[at - 1];
+    array[at] = element;
+  }
+}
+
 // Runs of equal error, in ascending levels, from errors in coarsening order.
 std::vector<ErrorStep> error_steps(const std::vector<float>& errors) {
   const auto finest = static_cast<Level>(errors.size());
@@ -182,8 +198,7 @@ class Recorder {
     for (const auto& repointed : record.corners) {
       if (face_removed_[repointed.corner / 3] == 0) corners_.push_back(repointed);
     }
-    std::stable_sort(corners_.begin(), corners_.end(),
-                     [](const auto& a, const auto& b) { return a.corner < b.corner; });
+    sort_by(corners_, [](const auto& repointed) { return repointed.corner; });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       const bool last = i + 1 == corners_.size() || corners_[i + 1].corner != corners_[i].corner;
@@ -202,7 +217,7 @@ class Recorder {
                          slot(m) > vertex_slot_[record.vertices.back().vertex];
       if (stays) moves_.push_back(m);
     }
-    std::stable_sort(moves_.begin(), moves_.end(), [&](auto a, auto b) { return slot(a) < slot(b); });
+    sort_by(moves_, slot);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < moves_.size(); ++i) {
       const bool last = i + 1 == moves_.size() || slot(moves_[i + 1]) != slot(moves_[i]);
