@@ -6,8 +6,6 @@
 namespace lodestone {
 namespace {
 
-constexpr CornerId next_corner(CornerId c) noexcept { return c % 3 == 2 ? c - 2 : c + 1; }
-
 // Calls f(low, use) for every side of every face that is not collapsed, in order of corners.
 template <class F>
 void for_each_side(const Mesh& mesh, const Weld& weld, F f) {

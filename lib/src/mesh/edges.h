@@ -12,11 +12,17 @@
 
 namespace lodestone {
 
+// The corner after c in its face.
+[[nodiscard]] constexpr CornerId next_corner(CornerId c) noexcept { return c % 3 == 2 ? c - 2 : c + 1; }
+
 // One side of a face: from the point of `corner` to that of the next corner of the face.
 struct EdgeUse {
   std::uint32_t high = 0;  // the larger of the two points
   CornerId corner = 0;
   bool ascending = true;  // the face runs from the smaller point to the larger
+
+  [[nodiscard]] CornerId corner_at_low() const noexcept { return ascending ? corner : next_corner(corner); }
+  [[nodiscard]] CornerId corner_at_high() const noexcept { return ascending ? next_corner(corner) : corner; }
 };
 
 // Uses are grouped by edge: edges ascend by (low, high), uses within one by corner. Faces with two corners on one

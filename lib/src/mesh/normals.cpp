@@ -12,12 +12,11 @@
 #include "base/disjoint_sets.h"
 #include "base/hash.h"
 #include "mesh/edges.h"
+#include "mesh/vertex_copy.h"
 #include "mesh/weld.h"
 
 namespace lodestone {
 namespace {
-
-constexpr CornerId next_corner(CornerId c) noexcept { return c % 3 == 2 ? c - 2 : c + 1; }
 
 double corner_angle_rad(const Mesh& mesh, CornerId c) {
   const auto& p = mesh.vertices.positions;
@@ -38,8 +37,6 @@ DisjointSets smooth_corners(const Mesh& mesh, const Weld& weld, const std::vecto
     const glm::dvec3& b = area_vectors[g];
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) < crease_rad;
   };
-  const auto corner_at_low = [](const EdgeUse& use) { return use.ascending ? use.corner : next_corner(use.corner); };
-  const auto corner_at_high = [](const EdgeUse& use) { return use.ascending ? next_corner(use.corner) : use.corner; };
   // On an edge of many faces each is compared with a few before it only, so that no input is quadratic.
   constexpr std::size_t most_before = 8;
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
@@ -47,8 +44,8 @@ DisjointSets smooth_corners(const Mesh& mesh, const Weld& weld, const std::vecto
     for (std::size_t i = 1; i < uses.size(); ++i) {
       for (std::size_t j = i > most_before ? i - most_before : 0; j < i; ++j) {
         if (!smooth(uses[i].corner / 3, uses[j].corner / 3)) continue;
-        corners.join(corner_at_low(uses[i]), corner_at_low(uses[j]));
-        corners.join(corner_at_high(uses[i]), corner_at_high(uses[j]));
+        corners.join(uses[i].corner_at_low(), uses[j].corner_at_low());
+        corners.join(uses[i].corner_at_high(), uses[j].corner_at_high());
       }
     }
   }
@@ -62,13 +59,6 @@ glm::vec3 direction(const glm::dvec3& v, const glm::dvec3& otherwise) {
     if (length > 0.0) return glm::vec3{n / length};
   }
   return {0.0F, 0.0F, 1.0F};
-}
-
-template <class T>
-void append_copy(std::vector<T>& values, VertexId v) {
-  if (values.empty()) return;
-  const T copy = values[v];
-  values.push_back(copy);
 }
 
 }  // namespace
@@ -106,10 +96,7 @@ void compute_normals(Mesh& mesh, double crease_rad) {
       normals[v] = normal;
       continue;
     }
-    vertex_of[k] = static_cast<VertexId>(normals.size());
-    append_copy(mesh.vertices.positions, v);
-    append_copy(mesh.vertices.uvs, v);
-    append_copy(mesh.vertices.colors, v);
+    vertex_of[k] = append_vertex_copy(mesh.vertices, v);
     normals.push_back(normal);
   }
   for (CornerId c = 0; c < corners; ++c) mesh.indices[c] = vertex_of[pairs.id_of[c]];
