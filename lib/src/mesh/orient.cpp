@@ -70,7 +70,7 @@ bool turned_wrong(const Mesh& mesh, const Part& part, const std::vector<std::uin
 }
 
 // Turns the marked faces; their vertices get the opposite normal, as copies where others use them too.
-void apply(Mesh& mesh, const std::vector<std::uint8_t>& turn) {
+void turn_faces(Mesh& mesh, const std::vector<std::uint8_t>& turn) {
   std::vector<std::uint8_t> kept_use(mesh.vertex_count(), 0);
   for (CornerId c = 0; c < mesh.indices.size(); ++c) {
     if (turn[c / 3] == 0) kept_use[mesh.indices[c]] = 1;
@@ -105,7 +105,7 @@ std::uint32_t orient_faces(Mesh& mesh) {
     if (!turned_wrong(mesh, part, turn)) continue;
     for (const FaceId g : part.faces) turn[g] = static_cast<std::uint8_t>(1 - turn[g]);
   }
-  apply(mesh, turn);
+  turn_faces(mesh, turn);
   return static_cast<std::uint32_t>(std::count(turn.begin(), turn.end(), std::uint8_t{1}));
 }
 
