@@ -37,7 +37,8 @@ std::uint32_t weld_near_points(Mesh& mesh, double tolerance_m) {
     double best = tolerance_m * tolerance_m;
     std::uint32_t nearest = none;
     for (int i = 0; i < 27; ++i) {
-      const auto found = cells.find({cell.x + i % 3 - 1, cell.y + i / 3 % 3 - 1, cell.z + i / 9 - 1});
+      const glm::ivec3 step{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      const auto found = cells.find({cell.x + step.x, cell.y + step.y, cell.z + step.z});
       if (found == cells.end()) continue;
       for (const std::uint32_t other : found->second) {
         const double d = squared_length(p - glm::dvec3{positions[weld.first_vertex[other]]});
