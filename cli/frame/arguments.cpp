@@ -56,7 +56,7 @@ auto number_parser(double min, double max) {
 }  // namespace
 
 void Arguments::file(const std::string& names, std::filesystem::path& value, const std::string& help, Need need) {
-  app_.add_option(names, value, help)->type_name("FILE")->required(need == Need::Required);
+  app_.add_option(names, value, help)->type_name(names.front() == '-' ? "FILE" : "")->required(need == Need::Required);
 }
 
 void Arguments::choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,

@@ -46,8 +46,9 @@ void catch_signals() {
   ::sigemptyset(&action.sa_mask);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
-  // A reader that went away shows as a failed write, which is reported like a full disk.
+  // A reader that went away and a file-size limit show as a failed write, which is reported like a full disk.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 Session::Session(const Common& common)

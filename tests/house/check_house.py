@@ -38,10 +38,10 @@ NAMES = {
     r"cereal/": ["formats/src/model_file/"],
     r"GL/osmesa\.h": ["viewer/headless/"],
     r"GLFW/": ["viewer/window/"],
-    r"imgui": ["viewer/window/"],
+    r"imgui": ["viewer/"],
     r"GL/|GLES\d?/|epoxy/|glad/": ["viewer/"],
     r"assimp/": ["formats/src/meshes/"],
-    r"CLI/": ["cli/frame/"],
+    r"CLI/": ["cli/frame/", "viewer/window/main.cpp"],
     r"nlohmann/": ["formats/src/", "cli/frame/report.cpp"],
 }
 

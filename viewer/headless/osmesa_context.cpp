@@ -20,7 +20,7 @@ struct Osmesa {
 };
 
 template <class Function>
-void find(void* library, const char* name, Function& function) {
+void load(void* library, const char* name, Function& function) {
   function = reinterpret_cast<Function>(::dlsym(library, name));
 }
 
@@ -29,10 +29,10 @@ const Osmesa& osmesa() {
   static const Osmesa loaded = [] {
     Osmesa found;
     if (void* library = ::dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL)) {
-      find(library, "OSMesaCreateContextAttribs", found.create_context);
-      find(library, "OSMesaMakeCurrent", found.make_current);
-      find(library, "OSMesaDestroyContext", found.destroy_context);
-      find(library, "OSMesaGetProcAddress", found.address);
+      load(library, "OSMesaCreateContextAttribs", found.create_context);
+      load(library, "OSMesaMakeCurrent", found.make_current);
+      load(library, "OSMesaDestroyContext", found.destroy_context);
+      load(library, "OSMesaGetProcAddress", found.address);
     }
     return found;
   }();
@@ -70,9 +70,13 @@ Result<std::unique_ptr<OsmesaContext>> OsmesaContext::create() {
 }
 
 OsmesaContext::~OsmesaContext() {
-  if (context_ != nullptr) osmesa().destroy_context(static_cast<OSMesaContext>(context_));
+  const auto destroy = osmesa().destroy_context;
+  if (context_ != nullptr && destroy != nullptr) destroy(static_cast<OSMesaContext>(context_));
 }
 
-void* OsmesaContext::address(const char* name) { return reinterpret_cast<void*>(osmesa().address(name)); }
+void* OsmesaContext::address(const char* name) {
+  const auto find = osmesa().address;
+  return find == nullptr ? nullptr : reinterpret_cast<void*>(find(name));
+}
 
 }  // namespace lodestone::render

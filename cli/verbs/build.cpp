@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/edge_collapse.h>
+
+#include <chrono>
+
+#include "mesh_input.h"
+#include "verbs.h"
+
+namespace lodestone::cli {
+namespace {
+
+class Build final : public Verb {
+ public:
+  [[nodiscard]] std::string name() const override { return "build"; }
+  [[nodiscard]] std::string summary() const override { return "Make a progressive model of a mesh"; }
+  [[nodiscard]] std::string example() const override { return "lodestone build house.obj -o house.lode"; }
+  void declare(Arguments& arguments) override;
+  [[nodiscard]] Status run(Session& session) override;
+
+ private:
+  [[nodiscard]] EdgeCollapseOptions options() const;
+  [[nodiscard]] Status check_method(Session& session) const;
+
+  MeshInput input_;
+  std::filesystem::path output_;
+  std::string method_ = "auto";
+  std::string placement_ = "optimal";
+  std::string attributes_ = "all";
+  bool lock_borders_ = false;
+  bool reference_textures_ = false;
+  std::uint32_t target_triangles_ = 0;
+  std::optional<double> max_error_m_;
+  std::uint32_t quantize_bits_ = 0;
+};
+
+void Build::declare(Arguments& arguments) {
+  input_.declare(arguments, "FILE", "Mesh to build from");
+  arguments.file("-o,--output", output_, "Model to write (.lode)", Need::Required);
+  arguments.choice("--method", method_, {"auto", "edge-collapse", "facet-shift"}, "How levels are made");
+  arguments.choice("--placement", placement_, {"optimal", "on-edge", "midpoint", "end-point", "subset"},
+                   "Where merged vertices go; subset plays back fastest");
+  arguments.choice("--attributes", attributes_, {"all", "none"}, "Whether uv, normals and colours steer");
+  arguments.flag("--lock-borders", lock_borders_, "Border vertices never move");
+  arguments.count("--target-triangles", target_triangles_, 0, none,
+                  "Stop at so many triangles, 0 = as few as possible");
+  arguments.length_m("--max-error", max_error_m_, "Stop before the error exceeds this");
+  arguments.count("--quantize", quantize_bits_, 0, 24, "Bits per coordinate in the file, 0 = lossless");
+  arguments.flag("--reference-textures", reference_textures_, "Refer to texture files instead of embedding them");
+}
+
+EdgeCollapseOptions Build::options() const {
+  EdgeCollapseOptions options{.target_triangles = target_triangles_};
+  if (placement_ == "on-edge") options.placement = Placement::OnEdge;
+  if (placement_ == "midpoint") options.placement = Placement::Midpoint;
+  if (placement_ == "end-point") options.placement = Placement::EndPoint;
+  if (placement_ == "subset") options.placement = Placement::Subset;
+  if (attributes_ == "none") options.attributes = Attributes::None;
+  if (lock_borders_) options.borders = Borders::Lock;
+  if (max_error_m_) options.max_error_m = *max_error_m_;
+  return options;
+}
+
+Status Build::check_method(Session& session) const {
+  if (method_ == "facet-shift") {
+    return Error{ErrorCode::BadArgument, "this version cannot build by facet-shift, use --method edge-collapse", ""};
+  }
+  if (method_ == "auto") session.remark("method: edge-collapse");
+  return Done{};
+}
+
+Status Build::run(Session& session) {
+  if (Status status = check_method(session); !status) return status;
+  auto loaded = input_.read(session);
+  if (!loaded) return loaded.error();
+  const Mesh source = std::move(loaded->mesh);
+
+  const auto start = std::chrono::steady_clock::now();
+  auto built = build_by_edge_collapse(source, options(), session.context());
+  const double build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  session.keep(built);
+  if (!built) return built.error();
+  if (!built->report.sentence.empty()) {
+    session.keep({Warning{built->report.sentence, input_.file().string()}});
+  }
+  const ProgressiveModel& model = *built->model;
+  auto bytes = write_model(model, output_, {.quantize_bits = quantize_bits_, .embed_textures = !reference_textures_},
+                           session.context());
+  session.keep(bytes);
+  if (!bytes) return bytes.error();
+
+  const LevelInfo base = model.info(0);
+  Report& report = session.report();
+  report.set("method", model.data().method);
+  report.set("triangles", source.triangle_count());
+  report.set("vertices", source.vertex_count());
+  report.set("records", model.record_count());
+  report.set("base_triangles", base.triangles);
+  report.set("base_error_m", base.error_m);
+  report.set("file_bytes", *bytes);
+  report.set("build_seconds", build_seconds);
+  report.set("triangles_per_second", source.triangle_count() / build_seconds);
+  return Done{};
+}
+
+}  // namespace
+
+std::unique_ptr<Verb> make_build() { return std::make_unique<Build>(); }
+
+}  // namespace lodestone::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "mesh_input.h"
+
+namespace lodestone::cli {
+
+void MeshInput::declare(Arguments& arguments, const std::string& name, const std::string& help, Need need) {
+  arguments.file(name, file_, help, need);
+  arguments.choice("--up", up_, {"from-file", "y", "z"}, "Axis that points up in the mesh file");
+  arguments.length_m("--unit", unit_m_, "Length of one unit of the mesh file");
+}
+
+Result<LoadedMesh> MeshInput::read(Session& session, LoadTextures textures) const {
+  ReadOptions options{.unit_m = unit_m_.value_or(0.0), .textures = textures};
+  if (up_ == "y") options.up = UpAxis::Y;
+  if (up_ == "z") options.up = UpAxis::Z;
+  auto loaded = read_mesh(file_, options, session.context());
+  session.keep(loaded);
+  return loaded;
+}
+
+}  // namespace lodestone::cli

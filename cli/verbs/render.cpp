@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "camera_options.h"
+#include "level_choice.h"
+#include "mesh_input.h"
+#include "verbs.h"
+
+namespace lodestone::cli {
+namespace {
+
+class Render final : public Verb {
+ public:
+  [[nodiscard]] std::string name() const override { return "render"; }
+  [[nodiscard]] std::string summary() const override { return "Draw a mesh or a level of a model, without a window"; }
+  [[nodiscard]] std::string example() const override {
+    return "lodestone render house.lode --ratio 0.2 --wireframe -o house.png";
+  }
+  void declare(Arguments& arguments) override;
+  [[nodiscard]] Status run(Session& session) override;
+
+ private:
+  [[nodiscard]] Result<render::Picture> draw(Session& session, const render::RenderOptions& options) const;
+  [[nodiscard]] Result<render::Picture> draw_model(Session& session, const render::RenderOptions& options) const;
+  [[nodiscard]] Result<render::Picture> draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
+                                                   const render::RenderOptions& options) const;
+
+  MeshInput input_;
+  std::filesystem::path output_;
+  LevelChoice level_;
+  CameraOptions camera_;
+  bool wireframe_ = false;
+  bool lod_colors_ = false;
+  bool untextured_ = false;
+  bool white_ = false;
+  std::uint32_t sheet_levels_ = 0;
+};
+
+void Render::declare(Arguments& arguments) {
+  input_.declare(arguments, "FILE", "Mesh or .lode file");
+  arguments.file("-o,--output", output_, "Picture to write: .png, .jpg or .webp", Need::Required);
+  level_.declare(arguments);
+  camera_.declare(arguments);
+  arguments.flag("--wireframe", wireframe_, "Draw triangle edges over the surface");
+  arguments.flag("--lod-colors", lod_colors_, "Colour by triangle size: blue is fine, red is coarse");
+  arguments.flag("--untextured", untextured_, "Leave textures out");
+  arguments.flag("--white", white_, "White background");
+  arguments.count("--sheet", sheet_levels_, 0, 64,
+                  "A sheet of so many levels of a model, each --size large, 0 = one picture");
+}
+
+Result<render::Picture> Render::draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
+                                           const render::RenderOptions& options) const {
+  if (level_.ways() > 0) return Error{ErrorCode::BadArgument, "--sheet shows many levels, do not name one", ""};
+  auto sheet = render::picture_sheet(model, {.levels = sheet_levels_, .render = options});
+  if (!sheet) return sheet.error();
+  return render::Picture{std::move(*sheet), model->face_slot_count(), 0.0};
+}
+
+Result<render::Picture> Render::draw_model(Session& session, const render::RenderOptions& options) const {
+  auto model = read_model(input_.file(), {}, session.context());
+  session.keep(model);
+  if (!model) return model.error();
+  if (sheet_levels_ > 0) return draw_sheet(*model, options);
+  if (level_.ways() == 0) return render::render_level(*model, (*model)->record_count(), options);
+  const auto level = level_.in(**model);
+  if (!level) return level.error();
+  return render::render_level(*model, *level, options);
+}
+
+Result<render::Picture> Render::draw(Session& session, const render::RenderOptions& options) const {
+  if (level_.ways() > 1) {
+    return Error{ErrorCode::BadArgument, "name the level by one of --triangles, --ratio, --error and --level", ""};
+  }
+  if (is_model_file(input_.file())) return draw_model(session, options);
+  if (level_.ways() > 0 || sheet_levels_ > 0) {
+    return Error{ErrorCode::BadArgument, "levels are chosen from a .lode file, build one first",
+                 input_.file().string()};
+  }
+  const auto loaded = input_.read(session);
+  if (!loaded) return loaded.error();
+  return render::render_mesh(loaded->mesh, options);
+}
+
+Status Render::run(Session& session) {
+  render::RenderOptions options;
+  camera_.apply(options);
+  options.look.wireframe = wireframe_;
+  if (untextured_) options.look.coloring = render::Coloring::Untextured;
+  if (lod_colors_) options.look.coloring = render::Coloring::Lod;
+  if (white_) options.look.background = render::Background::White;
+  auto picture = draw(session, options);
+  session.keep(picture);
+  if (!picture) return picture.error();
+  session.report().set("triangles", picture->triangles);
+  session.report().set("frame_seconds", picture->frame_seconds);
+  return write_image(picture->image, output_);
+}
+
+}  // namespace
+
+std::unique_ptr<Verb> make_render() { return std::make_unique<Render>(); }
+
+}  // namespace lodestone::cli

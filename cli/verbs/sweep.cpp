@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/formats.h>
+
+#include <cstdio>
+
+#include "camera_options.h"
+#include "verbs.h"
+
+namespace lodestone::cli {
+namespace {
+
+class Sweep final : public Verb {
+ public:
+  [[nodiscard]] std::string name() const override { return "sweep"; }
+  [[nodiscard]] std::string summary() const override {
+    return "Move a model's level under a fixed camera and measure popping";
+  }
+  [[nodiscard]] std::string example() const override {
+    return "lodestone sweep house.lode --frames 60 --from 1 --to 0.02 --size 320x240 --video house.gif";
+  }
+  void declare(Arguments& arguments) override;
+  [[nodiscard]] Status run(Session& session) override;
+
+ private:
+  [[nodiscard]] Result<render::SweepOptions> options() const;
+  [[nodiscard]] Status keep_frame(const Image& image, std::uint32_t frame, GifWriter* video) const;
+
+  std::filesystem::path model_;
+  std::filesystem::path folder_;
+  std::filesystem::path video_;
+  std::string style_ = "morph";
+  std::uint32_t frames_ = 600;
+  std::uint32_t levels_ = 5;
+  double from_ = 1.0;
+  double to_ = 0.02;
+  double morph_s_ = render::SweepOptions{}.morph_seconds;
+  bool and_back_ = false;
+  CameraOptions camera_{{960, 540}};
+};
+
+void Sweep::declare(Arguments& arguments) {
+  arguments.file("MODEL", model_, "Progressive model (.lode)", Need::Required);
+  arguments.count("--frames", frames_, 2, 100'000, "Frames, 1/60 s apart");
+  arguments.number("--from", from_, 0.0, 1.0, "Share of the triangles at the start");
+  arguments.number("--to", to_, 0.0, 1.0, "Share of the triangles at the end");
+  arguments.flag("--and-back", and_back_, "Half of the frames there, half back");
+  arguments.choice("--style", style_, {"morph", "hard", "discrete", "fade"}, "How levels follow each other");
+  arguments.count("--levels", levels_, 2, 100, "Fixed levels of discrete and fade");
+  arguments.number("--morph-seconds", morph_s_, 0.0, 10.0, "Time that one record glides in style morph");
+  arguments.file("-o,--output", folder_, "Folder that keeps the frames as PNG", Need::Optional);
+  arguments.file("--video", video_, "Animated GIF to write", Need::Optional);
+  camera_.declare(arguments);
+}
+
+Result<render::SweepOptions> Sweep::options() const {
+  const auto style = render::sweep_style(style_);
+  if (!style) return style.error();
+  render::SweepOptions options{.frames = frames_,
+                               .from_ratio = from_,
+                               .to_ratio = to_,
+                               .and_back = and_back_,
+                               .style = *style,
+                               .discrete_levels = levels_,
+                               .morph_seconds = morph_s_};
+  camera_.apply(options.render);
+  return options;
+}
+
+Status Sweep::keep_frame(const Image& image, std::uint32_t frame, GifWriter* video) const {
+  if (video != nullptr) {
+    if (Status added = video->add(image); !added) return added;
+  }
+  if (folder_.empty()) return Done{};
+  char name[32];
+  std::snprintf(name, sizeof name, "frame_%05u.png", frame);
+  return write_image(image, folder_ / name);
+}
+
+Status Sweep::run(Session& session) {
+  auto options = this->options();
+  if (!options) return options.error();
+  auto model = read_model(model_, {}, session.context());
+  session.keep(model);
+  if (!model) return model.error();
+  if (!folder_.empty()) {
+    std::error_code fault;
+    std::filesystem::create_directories(folder_, fault);
+    if (fault) return Error{ErrorCode::Unreadable, "the folder cannot be made: " + fault.message(), folder_.string()};
+  }
+  std::optional<GifWriter> video;
+  if (!video_.empty()) {
+    // Browsers show at most 50 frames a second of a GIF; the sweep's own rate is 60.
+    auto created = GifWriter::create(video_, 0.02);
+    if (!created) return created.error();
+    video.emplace(std::move(*created));
+  }
+  options->on_frame = [&](const Image& image, std::uint32_t frame) {
+    return keep_frame(image, frame, video ? &*video : nullptr);
+  };
+  auto swept = render::sweep(*model, *options, session.context());
+  session.keep(swept);
+  if (!swept) return swept.error();
+  Report& report = session.report();
+  report.set("style", style_);
+  report.set("frames", swept->frames);
+  report.set("pop_max", swept->pop_max);
+  report.set("pop_mean", swept->pop_mean);
+  report.set("pop_max_frame", swept->pop_max_frame);
+  report.set("frame_seconds_p50", swept->frame_seconds_p50);
+  report.set("frame_seconds_p99", swept->frame_seconds_p99);
+  report.set("memory_bytes", std::uint64_t{swept->memory_bytes});
+  return video ? video->finish() : Status{Done{}};
+}
+
+}  // namespace
+
+std::unique_ptr<Verb> make_sweep() { return std::make_unique<Sweep>(); }
+
+}  // namespace lodestone::cli

@@ -1,0 +1,391 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The contract of the command line: verbs, JSON keys, exit codes, clean failures. Run by ctest, test by test:
+
+    LODESTONE=path/to/lodestone contract.py [Class.test]
+"""
+import json
+import os
+import pty
+import resource
+import select
+import shlex
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ.get("LODESTONE", "lodestone")
+COMMON = {"lodestone", "seconds", "peak_rss_bytes", "warnings"}
+VERBS = ["inspect", "generate", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare", "view"]
+
+
+def run(*words, **options):
+    return subprocess.run([PROGRAM, *map(str, words)], check=False, capture_output=True, text=True, timeout=300, **options)
+
+
+class Contract(unittest.TestCase):
+    """A scratch folder with a small house and its model, made once."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.mkdtemp(prefix="lodestone-cli-")
+        cls.folder = Path(cls.kept)
+        cls.house = cls.folder / "house.obj"
+        cls.model = cls.folder / "house.lode"
+        made = run("generate", "house", "--triangles", 3000, "--texture-size", 64, "-o", cls.house)
+        assert made.returncode == 0, made.stderr
+        built = run("build", cls.house, "-o", cls.model)
+        assert built.returncode == 0, built.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.kept)
+
+    def setUp(self):
+        self.scratch = self.folder / self.id().rsplit(".", 1)[-1]
+        self.scratch.mkdir()
+
+    def json(self, *words, code=0):
+        """Runs with --json: stdout must be exactly one object on one line, with the common keys."""
+        done = run(*words, "--json")
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stdout.count("\n"), 1, done.stdout)
+        found = json.loads(done.stdout)
+        self.assertIsInstance(found, dict)
+        self.assertLessEqual(COMMON, set(found))
+        self.assertIsInstance(found["warnings"], list)
+        self.assertGreaterEqual(found["seconds"], 0)
+        self.assertGreater(found["peak_rss_bytes"], 0)
+        return found
+
+    def fails(self, code, *words, **options):
+        """Ends with `code` and one line on stderr that begins with the program's name."""
+        done = run(*words, **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        lines = [line for line in done.stderr.splitlines() if "warning:" not in line]
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertTrue(lines[0].startswith("lodestone: "), done.stderr)
+        self.assertEqual(done.stdout, "")
+        return lines[0]
+
+
+class Help(Contract):
+    def test_lists_the_verbs_that_exist(self):
+        done = run("--help")
+        self.assertEqual(done.returncode, 0)
+        for verb in VERBS:
+            self.assertRegex(done.stdout, rf"(?m)^\s+{verb}\s")
+        for later in ("clusters", "cut ", "terrain ", "distances"):
+            self.assertNotRegex(done.stdout, rf"(?m)^\s+{later}\s*")
+
+    def test_every_verb_explains_itself_with_an_example(self):
+        for verb in VERBS:
+            done = run(verb, "--help")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn(f"Example:\n  lodestone {verb} ", done.stdout)
+            for option in ("--json", "--quiet", "--strict", "--threads", "--max-memory"):
+                self.assertIn(option, done.stdout)
+
+    def test_the_examples_run_as_they_stand(self):
+        order = ["generate", "inspect", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare"]
+        for verb in order:
+            example = run(verb, "--help").stdout.rsplit("Example:\n", 1)[1].splitlines()[0]
+            words = shlex.split(example)
+            self.assertEqual(words[0], "lodestone")
+            done = run(*words[1:], cwd=self.scratch)
+            self.assertEqual(done.returncode, 0, example + "\n" + done.stderr)
+
+    def test_tells_its_version(self):
+        self.assertRegex(run("--version").stdout, r"^\d+\.\d+\.\d+\n$")
+
+
+class Keys(Contract):
+    def keys(self, wanted, *words):
+        found = self.json(*words)
+        self.assertLessEqual(set(wanted.split()), set(found))
+        return found
+
+    def test_inspect(self):
+        found = self.keys("vertices triangles materials textures components boundary_edges non_manifold_edges "
+                          "degenerate_triangles bounds_m origin_m up_axis crs", "inspect", self.house)
+        self.assertGreater(found["triangles"], 1000)
+        low, high = found["bounds_m"]
+        self.assertTrue(all(a < b for a, b in zip(low, high)))
+
+    def test_inspect_reads_models(self):
+        self.assertEqual(self.json("inspect", self.model)["triangles"], self.json("inspect", self.house)["triangles"])
+
+    def test_generate(self):
+        for kind in ("house", "street", "outcrop", "terrain"):
+            out = self.scratch / f"{kind}.ply"
+            found = self.keys("vertices triangles textures", "generate", kind, "--triangles", 20000, "--texture-size", 32,
+                              "--seed", 7, "-o", out)
+            self.assertGreater(out.stat().st_size, 0)
+            self.assertEqual(self.json("inspect", out)["triangles"], found["triangles"])
+
+    def test_convert(self):
+        source = self.json("inspect", self.house)
+        for kind in ("obj", "ply", "glb"):
+            out = self.scratch / f"house.{kind}"
+            found = self.keys("vertices triangles", "convert", self.house, "-o", out)
+            again = self.json("inspect", out)
+            self.assertEqual(found["triangles"], source["triangles"])
+            self.assertEqual(again["triangles"], source["triangles"])
+            for a, b in zip(sum(source["bounds_m"], []), sum(again["bounds_m"], [])):
+                self.assertAlmostEqual(a, b, delta=1e-3)
+
+    def test_build(self):
+        found = self.keys("triangles vertices records base_triangles base_error_m file_bytes build_seconds "
+                          "triangles_per_second", "build", self.house, "-o", self.scratch / "a.lode")
+        self.assertEqual(found["file_bytes"], (self.scratch / "a.lode").stat().st_size)
+        self.assertLess(found["base_triangles"], found["triangles"] / 10)
+
+    def test_build_options_do_what_they_say(self):
+        out = self.scratch / "a.lode"
+        stopped = self.json("build", self.house, "--target-triangles", 1500, "-o", out)
+        self.assertLessEqual(stopped["base_triangles"], 1500)
+        self.assertGreater(stopped["base_triangles"], 1000)
+        bounded = self.json("build", self.house, "--max-error", "1cm", "-o", out)
+        self.assertLessEqual(bounded["base_error_m"], 0.0101)
+        for placement in ("on-edge", "midpoint", "end-point", "subset"):
+            self.json("build", self.house, "--placement", placement, "--attributes", "none", "-o", out)
+            self.json("verify", out, "--source", self.house)
+        exact = self.json("build", self.house, "-o", out)["file_bytes"]
+        self.assertLess(self.json("build", self.house, "--quantize", 12, "-o", out)["file_bytes"], exact)
+        self.assertLess(self.json("build", self.house, "--reference-textures", "-o", out)["file_bytes"], exact)
+
+    def test_verify(self):
+        found = self.keys("records exact monotone in_use_consistent source_matches", "verify", self.model, "--source",
+                          self.house)
+        for key in ("exact", "monotone", "in_use_consistent", "source_matches"):
+            self.assertIs(found[key], True, key)
+        self.assertIsNone(self.json("verify", self.model)["source_matches"])
+
+    def test_verify_tells_a_wrong_source(self):
+        other = self.scratch / "other.obj"
+        run("generate", "house", "--triangles", 3000, "--roof", "flat", "--texture-size", 64, "-o", other)
+        self.assertIs(self.json("verify", self.model, "--source", other, code=2)["source_matches"], False)
+
+    def test_play(self):
+        found = self.keys("records refine_records_per_second coarsen_records_per_second seek_seconds_p50 "
+                          "seek_seconds_p99 bytes_per_triangle allocations", "play", self.model)
+        self.assertEqual(found["allocations"], 0)
+        self.assertGreater(found["refine_records_per_second"], 0)
+
+    def test_extract(self):
+        out = self.scratch / "level.ply"
+        records = self.json("verify", self.model)["records"]
+        all_of_it = self.json("inspect", self.house)["triangles"]
+        for words in (("--triangles", 500), ("--ratio", 0.2), ("--error", "5cm"), ("--level", records // 2)):
+            found = self.keys("triangles vertices error_m level", "extract", self.model, *words, "-o", out)
+            self.assertEqual(self.json("inspect", out)["triangles"], found["triangles"])
+            self.assertLessEqual(found["level"], records)
+        self.assertLessEqual(self.json("extract", self.model, "--triangles", 500, "-o", out)["triangles"], 500)
+        self.assertLessEqual(self.json("extract", self.model, "--ratio", 0.2, "-o", out)["triangles"], 0.2 * all_of_it)
+        self.assertLessEqual(self.json("extract", self.model, "--error", "5cm", "-o", out)["error_m"], 0.05)
+
+    def test_extract_from_a_part_of_the_file(self):
+        size = self.model.stat().st_size
+        out = self.scratch / "part.ply"
+        triangles = self.json("inspect", self.house)["triangles"]
+        self.assertEqual(self.json("extract", self.model, "--triangles", triangles, "--bytes", size, "-o", out)["triangles"],
+                         triangles)
+        self.json("extract", self.model, "--level", 0, "--bytes", size * 9 // 10, "-o", out)
+
+    def test_compare(self):
+        coarse = self.scratch / "coarse.ply"
+        level = self.json("extract", self.model, "--ratio", 0.3, "-o", coarse)
+        found = self.keys("hausdorff_m mean_m rms_m ratio_to_diagonal normal_deviation_deg image_rms", "compare",
+                          self.house, coarse, "--samples", 20000)
+        self.assertIsNone(found["image_rms"])
+        self.assertLessEqual(found["mean_m"], found["rms_m"])
+        self.assertLessEqual(found["rms_m"], found["hausdorff_m"])
+        self.assertGreater(level["error_m"], 0)
+        same = self.json("compare", self.house, self.house, "--samples", 1000, "--images")
+        self.assertLess(same["hausdorff_m"], 1e-6)
+        self.assertEqual(same["image_rms"], 0)
+
+    def test_render(self):
+        out = self.scratch / "house.png"
+        full = self.keys("triangles frame_seconds", "render", self.house, "--size", "160x120", "-o", out)
+        self.assertEqual(full["triangles"], self.json("inspect", self.house)["triangles"])
+        self.assertEqual(out.read_bytes()[:4], b"\x89PNG")
+        coarse = self.json("render", self.model, "--triangles", 400, "--wireframe", "--lod-colors", "--size", "160x120",
+                           "--eye", "30,-30,20", "--target", "0,0,3", "--fov", 50, "-o", out)
+        self.assertLessEqual(coarse["triangles"], 400)
+
+    def test_sweep(self):
+        wanted = "frames pop_max pop_mean frame_seconds_p50 frame_seconds_p99 memory_bytes"
+        common = ("--frames", 12, "--from", 1, "--to", 0.05, "--size", "160x120")
+        for style in ("morph", "hard", "discrete", "fade"):
+            found = self.keys(wanted, "sweep", self.model, "--style", style, *common)
+            self.assertEqual(found["frames"], 12)
+            self.assertGreaterEqual(found["pop_max"], found["pop_mean"])
+        gif = self.scratch / "sweep.gif"
+        self.json("sweep", self.model, *common, "-o", self.scratch / "frames", "--video", gif)
+        self.assertEqual(len(list((self.scratch / "frames").glob("*.png"))), 12)
+        self.assertEqual(gif.read_bytes()[:6], b"GIF89a")
+
+
+class Failures(Contract):
+    def test_wrong_arguments_end_with_1(self):
+        self.assertIn("--help", self.fails(1))
+        self.fails(1, "fly", self.house)
+        self.fails(1, "inspect")
+        self.fails(1, "inspect", self.house, "--no-such-option")
+        self.fails(1, "extract", self.model, "-o", self.scratch / "a.obj")
+        self.fails(1, "extract", self.model, "--level", 1, "--ratio", 1, "-o", self.scratch / "a.obj")
+        self.fails(1, "extract", self.model, "--level", 99999999, "-o", self.scratch / "a.obj")
+        self.assertIn("'5ft'", self.fails(1, "extract", self.model, "--error", "5ft", "-o", self.scratch / "a.obj"))
+        self.fails(1, "generate", "castle", "-o", self.scratch / "a.obj")
+        self.fails(1, "generate", "terrain", "--roof", "hip", "-o", self.scratch / "a.obj")
+
+    def test_what_this_version_cannot_do_is_said(self):
+        line = self.fails(1, "build", self.house, "--method", "facet-shift", "-o", self.scratch / "a.lode")
+        self.assertIn("edge-collapse", line)
+        self.assertEqual(list(self.scratch.iterdir()), [])
+
+    def test_automatic_choices_are_said(self):
+        done = run("build", self.house, "-o", self.scratch / "a.lode")
+        self.assertIn("edge-collapse", done.stderr)
+        self.assertEqual(self.json("build", self.house, "-o", self.scratch / "a.lode")["method"], "edge-collapse")
+
+    def test_missing_and_bad_files_end_with_2_and_name_the_file(self):
+        missing = self.scratch / "missing.obj"
+        self.assertIn(str(missing), self.fails(2, "inspect", missing))
+        for name, data in (("a.lode", b"not a model"), ("b.glb", b"glTF\x02\0\0\0"), ("c.ply", b"ply\nformat binary"),
+                           ("d.json", b"{"), ("e.bin", b""), ("f.lode", self.model.read_bytes()[:100])):
+            bad = self.scratch / name
+            bad.write_bytes(data)
+            self.assertIn(name, self.fails(2, "inspect", bad))
+        self.assertIn("a.lode", self.fails(2, "verify", self.scratch / "a.lode"))
+        self.fails(2, "inspect", self.scratch)
+
+    def test_errors_are_in_the_json_too(self):
+        found = self.json("inspect", self.scratch / "missing.obj", code=2)
+        self.assertEqual(found["error"]["code"], "not_found")
+        self.assertEqual(self.json("extract", self.model, "--error", "x", code=1)["error"]["code"], "bad_argument")
+
+    def test_warnings_end_with_3_only_when_strict(self):
+        dirty = self.scratch / "dirty.obj"
+        dirty.write_text("mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n")
+        found = self.json("inspect", dirty)
+        self.assertGreaterEqual(len(found["warnings"]), 1)
+        self.assertEqual(run("inspect", dirty, "--strict").returncode, 3)
+        self.assertIn("warning:", run("inspect", dirty).stderr)
+        self.assertEqual(run("inspect", dirty, "--quiet").stderr, "")
+        self.assertEqual(run("inspect", self.house, "--strict").returncode, 0)
+
+    def test_a_place_that_cannot_be_written_is_named(self):
+        nowhere = self.scratch / "no" / "such" / "folder" / "a.ply"
+        self.assertIn("/no/such/folder", self.fails(2, "convert", self.house, "-o", nowhere))
+        self.fails(2, "build", self.house, "-o", self.house / "a.lode", "--quiet")
+        self.fails(2, "convert", self.house, "-o", "/proc/a.ply")
+        self.assertIn(".xyz", self.fails(1, "convert", self.house, "-o", self.scratch / "a.xyz"))
+
+    def test_a_full_disk_leaves_the_old_file(self):
+        def small_files_only():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+        for name, words in (("a.lode", ("build", self.house, "--quiet")), ("a.obj", ("convert", self.house)),
+                            ("a.ply", ("convert", self.house)), ("a.glb", ("convert", self.house))):
+            out = self.scratch / name
+            out.write_text("old")
+            self.assertIn(name, self.fails(2, *words, "-o", out, preexec_fn=small_files_only))
+            self.assertEqual(out.read_text(), "old")
+        self.assertEqual(sorted(p.name for p in self.scratch.iterdir() if p.suffix in (".lode", ".obj", ".ply", ".glb")),
+                         ["a.glb", "a.lode", "a.obj", "a.ply"])
+
+    def test_a_report_that_cannot_be_written_is_an_error(self):
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run([PROGRAM, "inspect", self.house, "--json"], check=False, stdout=full,
+                                  stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 2)
+
+    def test_too_little_memory_is_one_line(self):
+        if os.environ.get("LODESTONE_SANITIZED"):
+            self.skipTest("a sanitizer's own memory counts too")
+        line = self.fails(2, "generate", "outcrop", "--triangles", "20M", "--max-memory", "200MB", "-o",
+                          self.scratch / "a.ply")
+        self.assertIn("--max-memory", line)
+
+
+class Interruption(Contract):
+    def interrupt(self, seconds, *words):
+        with subprocess.Popen([PROGRAM, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            time.sleep(seconds)
+            if process.poll() is not None:
+                return None, 0.0
+            asked = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=60)
+            return process.returncode, time.monotonic() - asked
+
+    def test_ctrl_c_ends_with_4_and_leaves_nothing(self):
+        big = self.folder / "big.ply"
+        if not big.exists():
+            self.json("generate", "outcrop", "--triangles", 600000, "--texture-size", 64, "-o", big)
+        cases = [("generate", "outcrop", "--triangles", "8M", "--texture-size", 64, "-o", self.scratch / "a.ply"),
+                 ("build", big, "-o", self.scratch / "a.lode")]
+        for words in cases:
+            for seconds in (0.2, 0.6):
+                code, late = self.interrupt(seconds, *words)
+                self.assertEqual(code, 4, words)
+                self.assertLess(late, 5.0)
+                self.assertEqual(list(self.scratch.iterdir()), [], words)
+
+
+class Threads(Contract):
+    def test_the_bytes_do_not_depend_on_them(self):
+        outcrop = self.scratch / "outcrop.glb"
+        self.json("generate", "outcrop", "--triangles", 30000, "--texture-size", 32, "-o", outcrop)
+        for source in (self.house, outcrop):
+            written = set()
+            for threads in (1, 2, 8):
+                out = self.scratch / f"{threads}.lode"
+                self.json("build", source, "--threads", threads, "-o", out)
+                written.add(out.read_bytes())
+            self.assertEqual(len(written), 1, source)
+
+    def test_nor_do_generated_models(self):
+        for kind in ("house", "street", "outcrop", "terrain"):
+            written = set()
+            for threads in (1, 2, 8):
+                out = self.scratch / f"{threads}.glb"
+                self.json("generate", kind, "--triangles", 20000, "--texture-size", 32, "--threads", threads, "-o", out)
+                written.add(out.read_bytes())
+            self.assertEqual(len(written), 1, kind)
+
+
+class Terminal(Contract):
+    def stderr_on_a_terminal(self, *words):
+        """What a terminal would be shown on stderr."""
+        master, slave = pty.openpty()
+        with subprocess.Popen([PROGRAM, *map(str, words)], stdout=subprocess.DEVNULL, stderr=slave) as process:
+            os.close(slave)
+            shown = b""
+            while True:
+                ready, _, _ = select.select([master], [], [], 0.2)
+                if ready:
+                    try:
+                        shown += os.read(master, 65536)
+                    except OSError:
+                        break
+                elif process.poll() is not None:
+                    break
+        os.close(master)
+        return shown
+
+    def test_long_work_shows_a_bar_only_there(self):
+        words = ("generate", "outcrop", "--triangles", "4M", "--texture-size", 64, "-o", self.scratch / "a.ply")
+        self.assertIn(b"%", self.stderr_on_a_terminal(*words))
+        self.assertNotIn(b"%", self.stderr_on_a_terminal(*words, "--quiet"))
+        self.assertEqual(run(*words).stderr, "")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
