@@ -7,6 +7,7 @@
 import json
 import os
 import pty
+import re
 import resource
 import select
 import shlex
@@ -19,6 +20,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM = os.environ.get("LODESTONE", "lodestone")
+MANUAL = Path(__file__).resolve().parents[2] / "docs" / "COMMAND_LINE.md"
 COMMON = {"lodestone", "seconds", "peak_rss_bytes", "warnings"}
 VERBS = ["inspect", "generate", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare", "view"]
 
@@ -105,8 +107,11 @@ class Help(Contract):
 
 class Keys(Contract):
     def keys(self, wanted, *words):
+        """The keys of the contract are there, and every key that is there is in the manual."""
         found = self.json(*words)
         self.assertLessEqual(set(wanted.split()), set(found))
+        row = re.search(rf"(?m)^\| `{words[0]} .*\| `([^`]*)` \|$", MANUAL.read_text())
+        self.assertEqual(set(found) - COMMON, set(row.group(1).split()))
         return found
 
     def test_inspect(self):
