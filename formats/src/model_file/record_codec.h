@@ -19,9 +19,18 @@ class RecordCodec : protected Replay<Space, Io> {
   RecordCodec(const ModelData& data, const ValueLayout& layout, Store store)
       : Base(data, layout), store_(std::move(store)) {}
 
+  // Makes room for the vertices of a block.
+  void open_block(std::uint32_t vertices) {
+    Base::reserve_vertices(topology_.vertex_count() + vertices);
+    store_.open_block(vertices);
+  }
+  // Whether the block had just as many.
+  [[nodiscard]] bool full() const noexcept { return !topology_.has_room_for_vertices(1); }
+
   // `counts`: base faces per material; `indices`: 3 per face, filled when reading.
   Fault base(Io& io, std::uint32_t vertex_count, std::span<const std::uint32_t> counts, std::span<VertexId> indices) {
-    for (std::uint32_t v = 0; v < vertex_count; ++v) Base::add_vertex();
+    if (!topology_.has_room_for_vertices(vertex_count)) return too_many_vertices;
+    for (std::uint32_t v = 0; v < vertex_count; ++v) topology_.add_vertex();
     VertexId* corner = indices.data();
     VertexId previous = 0;
     for (MaterialId m = 0; m < counts.size(); ++m) {
@@ -55,7 +64,8 @@ class RecordCodec : protected Replay<Space, Io> {
     fan.material = code_material(io, fan);
     const Guess guess = Base::guess_inside(Base::ring_of(fan, split));
     const FeatureId expected = store_.has_features() ? features_[fan.corners[0] / 3] : none;
-    const VertexId added = Base::add_vertex();
+    if (!topology_.has_room_for_vertices(1)) return too_many_vertices;
+    const VertexId added = topology_.add_vertex();
     const FaceId face = fan.material < topology_.material_count() ? topology_.next_face(fan.material) : 0;
     if (!Base::apply(fan, split, added)) return "a fan does not fit the faces";
     code_new(io, NewValues, added, guess, true);
@@ -74,9 +84,9 @@ class RecordCodec : protected Replay<Space, Io> {
     const VertexId split = topology_.vertex(fan.corners[0]);
     NameMode mode = NameMode::Number;
     if (topology_.listed(split)) {
-      topology_.gather(split, star_);
-      std::array<CornerId, max_fan_corners> run{};
-      const bool runs = Base::walk_ring(star_, place(fan.corners[0]), fan.count, run.data());
+      const auto star = topology_.star(split);
+      std::array<CornerId, max_fan_corners> run;
+      const bool runs = Base::walk_ring(star, place(star, fan.corners[0]), fan.count, run.data());
       mode = runs && std::equal(run.begin(), run.begin() + fan.count, fan.corners.begin()) ? NameMode::Run
                                                                                            : NameMode::List;
     }
@@ -105,7 +115,8 @@ class RecordCodec : protected Replay<Space, Io> {
     }
     const std::span<const std::uint32_t> merges{at, edit.vertices};
     Base::build_vocabulary(first, merges);
-    for (std::uint32_t i = 0; i < edit.vertices; ++i) Base::add_vertex();
+    if (!topology_.has_room_for_vertices(edit.vertices)) return too_many_vertices;
+    for (std::uint32_t i = 0; i < edit.vertices; ++i) topology_.add_vertex();
     std::uint32_t* groups = at + edit.vertices;
     std::uint32_t* corners = groups + 2 * std::size_t{edit.groups} + 3 * std::size_t{edit.faces};
     std::uint32_t* moved = corners + 2 * std::size_t{edit.corners};
@@ -115,14 +126,13 @@ class RecordCodec : protected Replay<Space, Io> {
   }
 
  private:
+  static constexpr Fault too_many_vertices = "a block adds more vertices than it should";
   using Base::last_error_;
   using Base::last_split_;
-  using Base::star_;
   using Base::topology_;
 
-  [[nodiscard]] std::uint32_t place(CornerId corner) const noexcept {
-    const auto end = star_.corners.begin() + star_.count;
-    return static_cast<std::uint32_t>(std::find(star_.corners.begin(), end, corner) - star_.corners.begin());
+  [[nodiscard]] static std::uint32_t place(std::span<const CornerId> star, CornerId corner) noexcept {
+    return static_cast<std::uint32_t>(std::find(star.begin(), star.end(), corner) - star.begin());
   }
 
   // Names the corners of a fan, and with them the vertex that it splits.
@@ -133,15 +143,15 @@ class RecordCodec : protected Replay<Space, Io> {
     split = back ? last_split_ - step : last_split_ + step;
     if (split >= topology_.vertex_count() || !topology_.listed(split)) return "a fan splits no vertex";
     last_split_ = split;
-    topology_.gather(split, star_);
-    if (star_.count == 0) return "a fan splits a vertex without faces";
-    if (mode == NameMode::List) return code_list(io, fan);
-    return mode == NameMode::Run ? code_run(io, fan) : "a record is of no known kind";
+    const auto star = topology_.star(split);
+    if (star.empty()) return "a fan splits a vertex without faces";
+    if (mode == NameMode::List) return code_list(io, star, fan);
+    return mode == NameMode::Run ? code_run(io, star, fan) : "a record is of no known kind";
   }
 
-  Fault code_run(Io& io, Fan& fan) {
-    const std::uint32_t valence = star_.count;
-    std::uint32_t start = Io::writing ? place(fan.corners[0]) : 0;
+  Fault code_run(Io& io, std::span<const CornerId> star, Fan& fan) {
+    const auto valence = static_cast<std::uint32_t>(star.size());
+    std::uint32_t start = Io::writing ? place(star, fan.corners[0]) : 0;
     if (valence <= 8) {
       const std::uint32_t both = io.code(Ring + valence - 1, start * valence + fan.count - 1);
       start = both / valence;
@@ -151,16 +161,16 @@ class RecordCodec : protected Replay<Space, Io> {
       fan.count = io.code(RingWide, fan.count);
     }
     if (start >= valence || fan.count == 0 || fan.count > max_fan_corners) return "a fan has no corners";
-    return Base::walk_ring(star_, start, fan.count, fan.corners.data()) ? fine : "a fan does not follow the ring";
+    return Base::walk_ring(star, start, fan.count, fan.corners.data()) ? fine : "a fan does not follow the ring";
   }
 
-  Fault code_list(Io& io, Fan& fan) {
+  Fault code_list(Io& io, std::span<const CornerId> star, Fan& fan) {
     fan.count = io.code(Corner, fan.count);
     if (fan.count == 0 || fan.count > max_fan_corners) return "a fan has no corners";
     for (std::uint32_t i = 0; i < fan.count; ++i) {
-      const std::uint32_t at = io.code(Corner, Io::writing ? place(fan.corners[i]) : 0);
-      if (at >= star_.count) return "a corner is not in its list";
-      fan.corners[i] = star_.corners[at];
+      const std::uint32_t at = io.code(Corner, Io::writing ? place(star, fan.corners[i]) : 0);
+      if (at >= star.size()) return "a corner is not in its list";
+      fan.corners[i] = star[at];
     }
     return fine;
   }
@@ -197,11 +207,10 @@ class RecordCodec : protected Replay<Space, Io> {
 
   // Base vertices come in slot order: a mean of the neighbours already known, else the one before.
   [[nodiscard]] Guess guess_base(VertexId v) {
-    std::array<VertexId, 2 * max_star> known{};
+    std::array<VertexId, 2 * max_star> known;
     std::size_t count = 0;
-    if (topology_.listed(v)) topology_.gather(v, star_);
-    for (std::uint32_t c = 0; topology_.listed(v) && c < star_.count; ++c) {
-      for (const CornerId other : {next_corner(star_.corners[c]), previous_corner(star_.corners[c])}) {
+    for (const CornerId corner : topology_.listed(v) ? topology_.star(v) : std::span<const CornerId>{}) {
+      for (const CornerId other : {next_corner(corner), previous_corner(corner)}) {
         if (topology_.vertex(other) < v) known[count++] = topology_.vertex(other);
       }
     }
@@ -213,15 +222,15 @@ class RecordCodec : protected Replay<Space, Io> {
 
   void code_new(Io& io, std::uint32_t group, VertexId slot, const Guess& guess, bool with_position) {
     std::uint32_t* words = Base::value(slot);
-    std::array<std::uint32_t, 3> position{words[0], words[1], words[2]};
+    const std::array<std::uint32_t, 3> position{words[0], words[1], words[2]};
     store_.before_new(slot, words);
     Base::codec_.code(io, group, guess, words, with_position);
     if (!with_position) std::copy(position.begin(), position.end(), words);
-    store_.after_new(words);
+    store_.after_new(slot, words);
   }
 
   void code_move(Io& io, std::uint32_t group, VertexId slot, const Guess& guess, bool with_position) {
-    std::array<std::uint32_t, max_value_words> before{};
+    std::array<std::uint32_t, max_value_words> before;
     std::uint32_t* words = Base::value(slot);
     std::copy_n(words, Base::stride_, before.begin());
     store_.before_move(slot, words);

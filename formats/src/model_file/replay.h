@@ -58,9 +58,10 @@ class Replay {
   [[nodiscard]] const std::uint32_t* value(VertexId v) const noexcept { return &values_[std::size_t{v} * stride_]; }
   [[nodiscard]] std::uint32_t* value(VertexId v) noexcept { return &values_[std::size_t{v} * stride_]; }
 
-  VertexId add_vertex() {
-    values_.resize(values_.size() + stride_);
-    return topology_.add_vertex();
+  // Makes room for so many vertices in all.
+  void reserve_vertices(std::uint32_t count) {
+    values_.resize(std::size_t{count} * stride_);
+    topology_.reserve_vertices(count);
   }
 
   [[nodiscard]] glm::dvec3 position(VertexId v) const noexcept {
@@ -117,25 +118,27 @@ class Replay {
   }
 
   // The `count` corners of `star` that follow each other counter-clockwise from place `start`; false if they do not.
-  [[nodiscard]] bool walk_ring(const Star& star, std::uint32_t start, std::uint32_t count, CornerId* out) noexcept {
-    for (std::uint32_t i = 0; i < star.count; ++i) after_[i] = topology_.vertex(next_corner(star.corners[i]));
+  [[nodiscard]] bool walk_ring(std::span<const CornerId> star, std::uint32_t start, std::uint32_t count,
+                               CornerId* out) noexcept {
+    const auto valence = static_cast<std::uint32_t>(star.size());
+    for (std::uint32_t i = 0; i < valence; ++i) after_[i] = topology_.vertex(next_corner(star[i]));
     std::uint32_t at = start;
     for (std::uint32_t done = 0;;) {
-      out[done] = star.corners[at];
+      out[done] = star[at];
       if (++done == count) return true;
-      const VertexId wanted = topology_.vertex(previous_corner(star.corners[at]));
-      at = static_cast<std::uint32_t>(std::find(&after_[0], &after_[star.count], wanted) - &after_[0]);
-      if (at == star.count) return false;
+      const VertexId wanted = topology_.vertex(previous_corner(star[at]));
+      for (at = 0; at < valence && after_[at] != wanted;) ++at;
+      if (at == valence) return false;
     }
   }
 
   // Applies a fan to the lists. False if it cannot be one.
-  [[nodiscard]] bool apply(const Fan& fan, VertexId split, VertexId added) noexcept {
+  [[nodiscard]] bool apply(const Fan& fan, VertexId split, VertexId added) {
     const std::uint32_t faces = fan.kind == RecordKind::FanBoth ? 2 : 1;
     if (!topology_.has_room(fan.material, faces)) return false;
     const VertexId a = topology_.vertex(next_corner(fan.corners[0]));
     const VertexId b = topology_.vertex(previous_corner(fan.corners[fan.count - 1]));
-    if (!topology_.split_star(split, star_, std::span{fan.corners}.first(fan.count), added)) return false;
+    if (!topology_.split_star(split, std::span{fan.corners}.first(fan.count), added)) return false;
     if (fan.kind != RecordKind::FanRight) topology_.add_face(fan.material, added, split, a);
     if (fan.kind != RecordKind::FanLeft) topology_.add_face(fan.material, added, b, split);
     return true;
@@ -155,9 +158,7 @@ class Replay {
       const auto before = merges.first(i);
       if (center >= first || !topology_.listed(center)) continue;
       if (std::find(before.begin(), before.end(), center) != before.end()) continue;
-      topology_.gather(center, star_);
-      for (std::uint32_t c = 0; c < star_.count; ++c) {
-        const CornerId corner = star_.corners[c];
+      for (const CornerId corner : topology_.star(center)) {
         if (words_.corners.size() < Vocabulary::capacity) words_.corners.push_back(corner);
         words_.add(topology_.vertex(next_corner(corner)));
         words_.add(topology_.vertex(previous_corner(corner)));
@@ -185,7 +186,6 @@ class Replay {
   ValueCodec<Space, Io> codec_;
   Topology topology_;
   std::vector<std::uint32_t> values_;
-  Star star_;
   Vocabulary words_;
   VertexId last_split_ = 0;
   VertexId last_vertex_ = 0;  // strangers among the vertices an edit names

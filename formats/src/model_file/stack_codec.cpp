@@ -3,20 +3,12 @@
 
 #include <cassert>
 
+#include "edit_words.h"
 #include "record_codec.h"
 #include "stores.h"
 
 namespace lodestone::model_file {
 namespace {
-
-constexpr std::uint32_t edit_head_words = 6;
-
-std::uint32_t load_corner(const ModelData& data, std::size_t at) noexcept {
-  const std::uint8_t* from = &data.fan_corners[at * data.corner_bytes];
-  std::uint32_t corner = 0;
-  for (std::uint32_t b = 0; b < data.corner_bytes; ++b) corner |= static_cast<std::uint32_t>(from[b]) << (8 * b);
-  return corner;
-}
 
 ValueLayout coded_layout(const VertexArrays& vertices, const Grid& grid) {
   return layout_of(vertices, grid.bits == 0 ? 3 : 2);
@@ -48,7 +40,9 @@ class Writer final : public StackWriter::Implementation {
         grid_(grid),
         layout_(coded_layout(data.vertices, grid)),
         codec_(data, layout_, WriteStore<Space>{data, grid_, layout_}),
-        faces_(data.base_face_counts.size(), 0) {}
+        faces_(data.base_face_counts.size(), 0) {
+    codec_.open_block(data.vertices.size());
+  }
 
   void base(WrittenColumns& columns) override {
     ColumnSink io{&columns};
@@ -71,7 +65,7 @@ class Writer final : public StackWriter::Implementation {
  private:
   void record(ColumnSink& io) {
     const std::uint8_t shape = data_.shapes[level_++];
-    const auto kind = static_cast<RecordKind>((shape >> RecordShape::kind_shift) & 3U);
+    const RecordKind kind = kind_of(shape);
     [[maybe_unused]] const char* fault = nullptr;
     if (kind == RecordKind::Edit) {
       io.code(Kind, static_cast<std::uint32_t>(kind));
@@ -97,12 +91,11 @@ class Writer final : public StackWriter::Implementation {
 
   Edit& load_edit() {
     const std::uint32_t* block = &data_.edits[edit_word_];
-    edit_ = {block[1], block[2], block[3], block[4], block[5], {block + edit_head_words, block + block[0] - 1}};
-    edit_word_ += block[0];
+    const EditWords words{block};
+    edit_ = {block[1], block[2], block[3], block[4], block[5], {words.body().begin(), words.body().end()}};
+    edit_word_ += words.length();
     vertices_ += edit_.vertices;
-    const std::uint32_t* group = edit_.words.data() + edit_.vertices;
-    for (std::uint32_t g = 0; g < edit_.groups; ++g, group += 2 + 3 * std::size_t{group[1]})
-      faces_[group[0]] += group[1];
+    words.for_each_group([&](MaterialId m, auto faces) { faces_[m] += static_cast<std::uint32_t>(faces.size() / 3); });
     return edit_;
   }
 
@@ -151,6 +144,7 @@ class Reader final : public StackReader::Implementation {
     }
     if (summary.vertices > columns[NewValues].left()) return "the base has too few values";
     if (3 * faces > columns[Split].left()) return "the base has too few indices";
+    codec_.open_block(summary.vertices);
     data_.base_vertex_count = summary.vertices;
     data_.base_indices.resize(3 * faces);
     const char* fault = codec_.base(io, summary.vertices, data_.base_face_counts, data_.base_indices);
@@ -159,6 +153,8 @@ class Reader final : public StackReader::Implementation {
 
   std::string records(std::uint32_t count, const BlockSummary& summary, ReadColumns& columns) override {
     ColumnSource io{&columns};
+    if (summary.vertices > columns[NewValues].left() + columns[EditMerge].left()) return "a block has too few values";
+    codec_.open_block(summary.vertices);
     if (count != columns[Kind].left()) return "a block has another number of records than it should";
     for (std::uint32_t i = 0; i < count; ++i) {
       if (const char* fault = record(io); fault != nullptr) return fault;
@@ -182,17 +178,13 @@ class Reader final : public StackReader::Implementation {
     data_.shapes.push_back(static_cast<std::uint8_t>(fan_.count |
                                                      static_cast<unsigned>(kind) << RecordShape::kind_shift |
                                                      (fan_.moves ? RecordShape::moves_flag : 0U)));
-    for (std::uint32_t i = 0; i < fan_.count; ++i) {
-      for (std::uint32_t b = 0; b < data_.corner_bytes; ++b) {
-        data_.fan_corners.push_back(static_cast<std::uint8_t>(fan_.corners[i] >> (8 * b)));
-      }
-    }
+    store_corners(data_, std::span{fan_.corners}.first(fan_.count));
     if (data_.base_face_counts.size() > 1) data_.fan_materials.push_back(static_cast<std::uint16_t>(fan_.material));
     return nullptr;
   }
 
   void store_edit() {
-    const auto length = static_cast<std::uint32_t>(edit_head_words + edit_.words.size() + 1);
+    const auto length = static_cast<std::uint32_t>(EditWords<const std::uint32_t>::head_words + edit_.words.size() + 1);
     data_.shapes.push_back(
         static_cast<std::uint8_t>(static_cast<unsigned>(RecordKind::Edit) << RecordShape::kind_shift));
     data_.edits.insert(data_.edits.end(),
@@ -203,6 +195,7 @@ class Reader final : public StackReader::Implementation {
 
   std::string close(ColumnSource& io, const BlockSummary& summary) {
     for (std::uint32_t i = 0; i < summary.error_steps; ++i) data_.errors.push_back(codec_.error_step(io, {}));
+    if (!codec_.full()) return "a block adds fewer vertices than it should";
     for (const ColumnReader& column : *io.columns) {
       if (column.overrun() || column.left() != 0) return "a block holds more or less than its records";
     }

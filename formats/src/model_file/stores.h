@@ -21,12 +21,13 @@ class WriteStore {
     for (VertexId v = 0; v < data.vertices.size(); ++v) get_floats(data.vertices, v, floats(v));
   }
 
+  void open_block(std::uint32_t /*vertices*/) const noexcept {}
   void before_new(VertexId slot, std::uint32_t* words) const noexcept {
     std::uint32_t now[max_value_words];
     get_floats(data_.vertices, slot, now);
     convert(now, words);
   }
-  void after_new(const std::uint32_t* /*words*/) const noexcept {}
+  void after_new(VertexId /*slot*/, const std::uint32_t* /*words*/) const noexcept {}
 
   void before_move(VertexId slot, std::uint32_t* words) noexcept {
     std::uint32_t* now = floats(slot);
@@ -67,10 +68,17 @@ class ReadStore {
     features_ = features;
   }
 
+  void open_block(std::uint32_t vertices) {
+    const std::size_t count = data_.vertices.size() + std::size_t{vertices};
+    data_.vertices.positions.resize(count);
+    if (floats_.normals) data_.vertices.normals.resize(count);
+    if (floats_.uvs) data_.vertices.uvs.resize(count);
+    if (floats_.colors) data_.vertices.colors.resize(count);
+  }
   void before_new(VertexId /*slot*/, std::uint32_t* /*words*/) const noexcept {}
-  void after_new(const std::uint32_t* words) {
+  void after_new(VertexId slot, const std::uint32_t* words) noexcept {
     std::uint32_t now[max_value_words];
-    push_floats(data_.vertices, floats_, convert(words, now));
+    set_floats(data_.vertices, floats_, slot, convert(words, now));
   }
 
   void before_move(VertexId /*slot*/, std::uint32_t* /*words*/) const noexcept {}

@@ -2,6 +2,7 @@
 #include "topology.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lodestone::model_file {
 
@@ -10,60 +11,67 @@ MaterialId Topology::material(FaceId face) const noexcept {
   return static_cast<MaterialId>(above - face_begin_.begin() - 1);
 }
 
-void Topology::link(VertexId vertex, CornerId corner) noexcept {
-  vertices_[corner] = vertex;
-  if (!listed(vertex)) return;
-  if (++valence_[vertex] > max_star) {
-    first_[vertex] = none;
-    return;
+std::uint32_t Topology::take(std::uint32_t room) {
+  auto& free = free_[static_cast<std::size_t>(std::countr_zero(room)) - 4];
+  if (free.empty()) {
+    pool_.resize(pool_.size() + room);
+    return static_cast<std::uint32_t>(pool_.size() - room);
   }
-  next_[corner] = first_[vertex];
-  first_[vertex] = corner;
+  const std::uint32_t offset = free.back();
+  free.pop_back();
+  return offset;
 }
 
-void Topology::unlink(VertexId vertex, CornerId corner) noexcept {
-  if (!listed(vertex)) return;
-  --valence_[vertex];
-  if (first_[vertex] == corner) {
-    first_[vertex] = next_[corner];
-    return;
+void Topology::give_back(const Inline& place) {
+  free_[static_cast<std::size_t>(std::countr_zero(place[1])) - 4].push_back(place[0]);
+}
+
+void Topology::link_long(VertexId vertex, CornerId corner) {
+  const std::uint32_t count = counts_[vertex];
+  if (count > max_star) return;
+  Inline& place = stars_[vertex];
+  if (count == max_star) {
+    give_back(place);
+  } else if (count == inline_corners || count == place[1]) {
+    const std::uint32_t offset = take(2 * count);
+    std::copy_n(list(vertex), count, &pool_[offset]);
+    if (count != inline_corners) give_back(place);
+    place[0] = offset;
+    place[1] = 2 * count;
   }
-  CornerId before = first_[vertex];
-  while (next_[before] != corner) before = next_[before];
-  next_[before] = next_[corner];
+  if (count < max_star) pool_[place[0] + count] = corner;
+  counts_[vertex] = static_cast<std::uint8_t>(count + 1);
 }
 
-FaceId Topology::add_face(MaterialId m, VertexId a, VertexId b, VertexId c) noexcept {
-  const FaceId face = next_face_[m]++;
-  link(a, 3 * face);
-  link(b, 3 * face + 1);
-  link(c, 3 * face + 2);
-  return face;
+void Topology::shorten(VertexId vertex, std::uint32_t count) {
+  if (counts_[vertex] > inline_corners && count <= inline_corners) {
+    const Inline place = stars_[vertex];
+    std::copy_n(&pool_[place[0]], count, stars_[vertex].data());
+    give_back(place);
+  }
+  counts_[vertex] = static_cast<std::uint8_t>(count);
 }
 
-void Topology::repoint(CornerId corner, VertexId to) noexcept {
+void Topology::unlink(VertexId vertex, CornerId corner) {
+  if (!listed(vertex)) return;
+  CornerId* first = list(vertex);
+  shorten(vertex, static_cast<std::uint32_t>(std::remove(first, first + counts_[vertex], corner) - first));
+}
+
+void Topology::repoint(CornerId corner, VertexId to) {
   unlink(vertices_[corner], corner);
   link(to, corner);
 }
 
-bool Topology::split_star(VertexId from, const Star& star, std::span<const CornerId> run, VertexId to) noexcept {
+bool Topology::split_star(VertexId from, std::span<const CornerId> run, VertexId to) {
   for (const CornerId corner : run) {
     if (vertices_[corner] != from) return false;
-    vertices_[corner] = to;
+    link(to, corner);
   }
-  for (std::size_t i = 0; i < run.size(); ++i) next_[run[i]] = i + 1 < run.size() ? run[i + 1] : none;
-  first_[to] = run.front();
-  valence_[to] = static_cast<std::uint8_t>(run.size());
   if (!listed(from)) return true;
-  CornerId last = none;
-  for (std::uint32_t i = 0; i < star.count; ++i) {
-    const CornerId corner = star.corners[i];
-    if (vertices_[corner] != from) continue;
-    (last == none ? first_[from] : next_[last]) = corner;
-    last = corner;
-  }
-  (last == none ? first_[from] : next_[last]) = none;
-  valence_[from] = static_cast<std::uint8_t>(star.count - run.size());
+  CornerId* first = list(from);
+  const auto moved = [&](CornerId corner) { return vertices_[corner] != from; };
+  shorten(from, static_cast<std::uint32_t>(std::remove_if(first, first + counts_[from], moved) - first));
   return true;
 }
 

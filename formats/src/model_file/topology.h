@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The faces in use while the stack is replayed, with the corners around each vertex. Writer and reader keep the same
 // lists in the same order, so a corner costs a few bits: its place among the corners of a vertex.
+//
+// A list of up to eight corners lies in one half of a cache line, in slot order; longer ones move to a pool.
 #pragma once
 
 #include <array>
@@ -16,11 +18,6 @@ namespace lodestone::model_file {
 // work a hostile file can ask for.
 inline constexpr std::uint32_t max_star = 250;
 
-struct Star {
-  std::array<CornerId, max_star> corners;
-  std::uint32_t count = 0;
-};
-
 [[nodiscard]] inline CornerId next_corner(CornerId corner) noexcept {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
@@ -34,14 +31,13 @@ class Topology {
   explicit Topology(std::span<const FaceId> face_begin)
       : next_face_(face_begin.begin(), face_begin.end()),
         face_begin_(face_begin.begin(), face_begin.end()),
-        vertices_(3 * static_cast<std::size_t>(face_begin.back()), none),
-        next_(3 * static_cast<std::size_t>(face_begin.back()), none) {}
+        vertices_(3 * static_cast<std::size_t>(face_begin.back()), none) {}
 
-  [[nodiscard]] std::uint32_t vertex_count() const noexcept { return static_cast<std::uint32_t>(first_.size()); }
+  [[nodiscard]] std::uint32_t vertex_count() const noexcept { return vertex_count_; }
   [[nodiscard]] std::uint32_t corner_count() const noexcept { return static_cast<std::uint32_t>(vertices_.size()); }
   // The vertex at a corner; `none` where the face is not in use.
   [[nodiscard]] VertexId vertex(CornerId corner) const noexcept { return vertices_[corner]; }
-  [[nodiscard]] bool listed(VertexId vertex) const noexcept { return valence_[vertex] <= max_star; }
+  [[nodiscard]] bool listed(VertexId vertex) const noexcept { return counts_[vertex] <= max_star; }
   [[nodiscard]] std::uint32_t material_count() const noexcept {
     return static_cast<std::uint32_t>(face_begin_.size() - 1);
   }
@@ -53,38 +49,70 @@ class Topology {
   // The slot the next face of this material takes.
   [[nodiscard]] FaceId next_face(MaterialId m) const noexcept { return next_face_[m]; }
 
-  VertexId add_vertex() {
-    first_.push_back(none);
-    valence_.push_back(0);
-    return vertex_count() - 1;
+  // Makes room for so many vertices in all.
+  void reserve_vertices(std::uint32_t count) {
+    stars_.resize(count);
+    counts_.resize(count, 0);
+  }
+  [[nodiscard]] bool has_room_for_vertices(std::uint32_t count) const noexcept {
+    return count <= counts_.size() - vertex_count_;
+  }
+  // Precondition: there is room.
+  VertexId add_vertex() noexcept { return vertex_count_++; }
+  // Preconditions: has_room(m, 1); vertices exist. The corners become the last of their vertices' lists.
+  FaceId add_face(MaterialId m, VertexId a, VertexId b, VertexId c) {
+    const FaceId face = next_face_[m]++;
+    link(a, 3 * face);
+    link(b, 3 * face + 1);
+    link(c, 3 * face + 2);
+    return face;
   }
 
-  // Preconditions: has_room(m, 1); vertices exist. The corners become the first of their vertices' lists.
-  FaceId add_face(MaterialId m, VertexId a, VertexId b, VertexId c) noexcept;
-
-  // The corners of a vertex in list order. Precondition: listed(vertex).
-  void gather(VertexId vertex, Star& star) const noexcept {
-    std::uint32_t count = 0;
-    for (CornerId c = first_[vertex]; c != none; c = next_[c]) star.corners[count++] = c;
-    star.count = count;
+  // The corners of a vertex in list order. Precondition: listed(vertex). Valid until the lists change.
+  [[nodiscard]] std::span<const CornerId> star(VertexId vertex) const noexcept {
+    return {list(vertex), counts_[vertex]};
   }
 
-  void repoint(CornerId corner, VertexId to) noexcept;
+  // The corner leaves its vertex's list, whose others keep their order, and becomes the last of that of `to`.
+  void repoint(CornerId corner, VertexId to);
 
-  // What a fan does: moves `run`, a part of the list `star` of `from`, to the vertex `to`, which has no corners yet, in
-  // that order. False, with the lists spoilt, if a corner of `run` does not belong to `from` or occurs twice. `star` is
-  // ignored where `from` has no list.
-  [[nodiscard]] bool split_star(VertexId from, const Star& star, std::span<const CornerId> run, VertexId to) noexcept;
+  // What a fan does: moves `run`, some of the corners of `from`, to the vertex `to`, which has no corners yet, in that
+  // order. False, with the lists spoilt, if a corner of `run` does not belong to `from` or occurs twice.
+  [[nodiscard]] bool split_star(VertexId from, std::span<const CornerId> run, VertexId to);
 
  private:
-  void link(VertexId vertex, CornerId corner) noexcept;
-  void unlink(VertexId vertex, CornerId corner) noexcept;
+  static constexpr std::uint32_t inline_corners = 8;
+  // The list itself where it is no longer than that; else where it lies in `pool_`, and the room it has there.
+  using Inline = std::array<CornerId, inline_corners>;
+
+  [[nodiscard]] const CornerId* list(VertexId vertex) const noexcept {
+    return counts_[vertex] <= inline_corners ? stars_[vertex].data() : &pool_[stars_[vertex][0]];
+  }
+  [[nodiscard]] CornerId* list(VertexId vertex) noexcept {
+    return counts_[vertex] <= inline_corners ? stars_[vertex].data() : &pool_[stars_[vertex][0]];
+  }
+  void link(VertexId vertex, CornerId corner) {
+    vertices_[corner] = vertex;
+    if (counts_[vertex] < inline_corners) {
+      stars_[vertex][counts_[vertex]++] = corner;
+    } else {
+      link_long(vertex, corner);
+    }
+  }
+  void link_long(VertexId vertex, CornerId corner);
+  void unlink(VertexId vertex, CornerId corner);
+  std::uint32_t take(std::uint32_t room);
+  void give_back(const Inline& place);
+  // Sets the length of a list to one that is not longer.
+  void shorten(VertexId vertex, std::uint32_t count);
 
   std::vector<FaceId> next_face_, face_begin_;
-  std::vector<VertexId> vertices_;     // per corner
-  std::vector<CornerId> next_;         // per corner: the next of the same vertex
-  std::vector<CornerId> first_;        // per vertex
-  std::vector<std::uint8_t> valence_;  // per vertex; max_star + 1: no list
+  std::vector<VertexId> vertices_;  // per corner
+  std::uint32_t vertex_count_ = 0;
+  std::vector<Inline> stars_;  // per vertex
+  std::vector<std::uint8_t> counts_;
+  std::vector<CornerId> pool_;
+  std::array<std::vector<std::uint32_t>, 5> free_;  // places in the pool with room for 16, 32, ... 256
 };
 
 }  // namespace lodestone::model_file

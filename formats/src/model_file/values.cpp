@@ -65,17 +65,6 @@ void get_floats(const VertexArrays& vertices, VertexId slot, std::uint32_t* word
   copy(vertices.colors);
 }
 
-void push_floats(VertexArrays& vertices, const ValueLayout& floats, const std::uint32_t* words) {
-  const auto push = [](auto& array, const std::uint32_t* from) {
-    array.emplace_back(0);
-    std::memcpy(&array.back(), from, sizeof(array.back()));
-  };
-  push(vertices.positions, words);
-  if (floats.normals) push(vertices.normals, words + floats.normal());
-  if (floats.uvs) push(vertices.uvs, words + floats.uv());
-  if (floats.colors) push(vertices.colors, words + floats.color());
-}
-
 Grid choose_grid(const Box& box, const VertexArrays& vertices, std::uint32_t bits) {
   Grid grid{.bits = bits};
   const glm::dvec3 size = box.size();

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -44,7 +45,13 @@ inline constexpr std::uint32_t max_value_words = 9;
 
 // A value as floats (the words of ModelData::value_xor).
 void get_floats(const VertexArrays& vertices, VertexId slot, std::uint32_t* words) noexcept;
-void push_floats(VertexArrays& vertices, const ValueLayout& floats, const std::uint32_t* words);
+inline void set_floats(VertexArrays& vertices, const ValueLayout& floats, VertexId slot,
+                       const std::uint32_t* words) noexcept {
+  std::memcpy(&vertices.positions[slot], words, 12);
+  if (floats.normals) std::memcpy(&vertices.normals[slot], words + floats.normal(), 12);
+  if (floats.uvs) std::memcpy(&vertices.uvs[slot], words + floats.uv(), 8);
+  if (floats.colors) std::memcpy(&vertices.colors[slot], words + floats.color(), 4);
+}
 
 // Grid words of a value given as float words, and back. `layout` is that of the grid words.
 void to_grid(const Grid& grid, const ValueLayout& layout, const std::uint32_t* floats, std::uint32_t* words) noexcept;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Order of blocks: base, records from coarse to fine, textures from small to large.
 #include <algorithm>
-#include <cassert>
-#include <numeric>
+#include <cmath>
+#include <limits>
 
 #include <lodestone/formats.h>
 
 #include "header.h"
 #include "output_file.h"
 #include "reader.h"
+#include "reorder.h"
 #include "stack_codec.h"
 
 namespace lodestone {
@@ -167,7 +168,15 @@ Result<std::uint64_t> write_model(const ProgressiveModel& model, const std::file
   if (options.quantize_bits > max_grid_bits) {
     return Error{ErrorCode::BadArgument, "positions can be quantised to at most 20 bits", file.string()};
   }
-  return ModelWriter{model.data(), context}.write(file, options, model.bounds());
+  if (options.quantize_bits == 0) return ModelWriter{model.data(), context}.write(file, options, model.bounds());
+  // Snapping moves a vertex by half the diagonal of a cell at most; every level says so.
+  ModelData data = reorder(model.data());
+  const double half_cell_m =
+      std::sqrt(3.0) / 2.0 * choose_grid(model.bounds(), data.vertices, options.quantize_bits).step_m;
+  for (ErrorStep& step : data.errors) {
+    step.error_m = std::nextafter(static_cast<float>(step.error_m + half_cell_m), std::numeric_limits<float>::max());
+  }
+  return ModelWriter{data, context}.write(file, options, model.bounds());
 }
 
 }  // namespace lodestone
