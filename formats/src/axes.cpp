@@ -11,7 +11,7 @@ void to_lodestone_axes(Mesh& mesh, SourceInfo& info, UpAxis file_up, double file
   info.up_axis = up == UpAxis::Y ? "Y" : "Z";
   info.unit_m = unit_m;
   if (up == UpAxis::Y) {
-    mesh.origin = y_up_to_z_up(mesh.origin);
+    mesh.origin = y_up_to_z_up(mesh.origin) + 0.0;  // no -0
     for (auto& p : mesh.vertices.positions) p = y_up_to_z_up(p);
     for (auto& n : mesh.vertices.normals) n = y_up_to_z_up(n);
   }

@@ -26,14 +26,22 @@ ReadFunction reader_by_content(std::string_view head) {
   if (head.starts_with("ply\n") || head.starts_with("ply\r")) return read_ply;
   if (is_text(head) && contains(head, "CityModel") && contains(head, "citygml")) return read_citygml;
   if (is_text(head) && contains(head, "\"CityJSON")) return read_cityjson;
+  if (head.starts_with("glTF")) return read_gltf;
   if (looks_like_obj(head)) return read_obj;
+  // 3DS, FBX, IFC and COLLADA under whatever name.
+  if (head.starts_with("MM") && head.size() >= 6 && head[2] != '\0' && !is_text(head)) return read_assimp;
+  if (head.starts_with("Kaydara FBX") || head.starts_with("ISO-10303-21") || contains(head, "<COLLADA")) {
+    return read_assimp;
+  }
   return nullptr;
 }
 
 ReadFunction reader_by_extension(const std::string& extension) {
-  static constexpr std::array<std::pair<std::string_view, ReadFunction>, 7> table{{
+  static constexpr std::array<std::pair<std::string_view, ReadFunction>, 9> table{{
       {".obj", read_obj},
       {".ply", read_ply},
+      {".gltf", read_gltf},
+      {".glb", read_gltf},
       {".gml", read_citygml},
       {".citygml", read_citygml},
       {".json", read_cityjson},
@@ -41,7 +49,17 @@ ReadFunction reader_by_extension(const std::string& extension) {
       {".jsonl", read_cityjson},
   }};
   const auto* found = std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.first == extension; });
-  return found != table.end() ? found->second : nullptr;
+  if (found != table.end()) return found->second;
+  return assimp_reads(extension) ? read_assimp : nullptr;
+}
+
+Result<LoadedMesh> read_finest_level(const std::filesystem::path& file, const Context& context) {
+  auto model = read_model(file, {}, context);
+  if (!model) return model.error();
+  LoadedMesh loaded;
+  loaded.mesh = (*model)->extract((*model)->record_count());
+  loaded.info = {.format = "lode", .up_axis = "Z", .unit_m = 1.0};
+  return {std::move(loaded), std::move(model.warnings())};
 }
 
 }  // namespace
@@ -81,6 +99,7 @@ Result<LoadedMesh> read_input(const Input& input, const ReadOptions& options, co
 Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOptions& options, const Context& context) {
   auto input = Input::open(file, options.max_file_bytes);
   if (!input) return input.error();
+  if (is_model_file(file)) return read_finest_level(file, context);
   return read_input(*input, options, context);
 }
 

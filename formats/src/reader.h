@@ -89,6 +89,11 @@ using ReadFunction = Result<LoadedMesh> (*)(const Input&, const ReadOptions&, co
 [[nodiscard]] Result<LoadedMesh> read_ply(const Input& input, const ReadOptions& options, const Context& context);
 [[nodiscard]] Result<LoadedMesh> read_gltf(const Input& input, const ReadOptions& options, const Context& context);
 [[nodiscard]] Result<LoadedMesh> read_assimp(const Input& input, const ReadOptions& options, const Context& context);
+// The same without the process around it, for fuzzing; a broken file may crash it.
+[[nodiscard]] Result<LoadedMesh> read_assimp_in_process(const Input& input, const ReadOptions& options,
+                                                        const Context& context);
+// Whether assimp has an importer for files of this extension (".dae").
+[[nodiscard]] bool assimp_reads(const std::string& extension);
 [[nodiscard]] Result<LoadedMesh> read_cityjson(const Input& input, const ReadOptions& options, const Context& context);
 [[nodiscard]] Result<LoadedMesh> read_citygml(const Input& input, const ReadOptions& options, const Context& context);
 
