@@ -299,7 +299,10 @@ void Wedges::commit(const Star& star, const Choice& choice, PassLog& log) {
 VertexId Wedges::heir(const Star& star, const Choice& choice, const Dead& dead) const {
   const VertexId paired = target_of(dead.vertex);
   if (paired != dead.vertex && mesh_.vertex_uses[paired] != 0) return paired;
-  if (dead.point != choice.kept) return any_vertex_at(dead.point);
+  if (dead.point != choice.kept) {
+    // A corner whose last face went along has nothing left at its place: it goes to the vertex kept.
+    if (const VertexId there = any_vertex_at(dead.point); there != none) return there;
+  }
   for (const StarFace& f : star.faces) {
     const Face& face = mesh_.faces[f.index];
     if (face.id != none) return mesh_.vertex_of(face, f.k);
