@@ -152,7 +152,10 @@ class Recorder {
   // Gives slots to the vertices of one record and sorts its span by them. A cycle of targets is cut: its last one
   // merges into itself.
   void order_removed(std::span<EditLog::RemovedVertex> removed, std::vector<std::uint32_t>& place) {
-    for (std::uint32_t i = 0; i < removed.size(); ++i) place[removed[i].vertex] = i;
+    for (std::uint32_t i = 0; i < removed.size(); ++i) {
+      place[removed[i].vertex] = i;
+      if (removed[i].merges_into == none) removed[i].merges_into = removed[i].vertex;
+    }
     std::vector<std::uint32_t>& chain = scratch_;
     for (std::uint32_t start = 0; start < removed.size(); ++start) {
       chain.clear();

@@ -26,7 +26,8 @@ class EditLog {
 
   void begin(float error_m);
   void remove_face(FaceId face);
-  // `merges_into`: the vertex it lies upon when it goes, which remains (where a geomorph takes it).
+  // `merges_into`: the vertex it lies upon when it goes (where a geomorph takes it): one that remains, or one removed
+  // by the same record, or itself or `none`: it stays where it is.
   void remove_vertex(VertexId vertex, VertexId merges_into);
   void repoint(CornerId corner, VertexId to);
   // `words`: value_words() 32-bit words of the new value, in the order position, normal, uv, colour.
