@@ -2,3 +2,4 @@
 find_package(glm REQUIRED)
 find_package(TBB REQUIRED)
 find_package(OpenMesh REQUIRED)
+find_package(NLopt REQUIRED)

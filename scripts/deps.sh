@@ -15,7 +15,7 @@ packages_of() {
     build) echo g++ cmake ninja-build pkg-config git ca-certificates \
       libglm-dev libtbb-dev libopenmesh-dev libmetis-dev libcereal-dev libzstd-dev libxxhash-dev \
       nlohmann-json3-dev libcli11-dev libassimp-dev libtinygltf-dev libtinyobjloader-dev libfast-float-dev \
-      libpugixml-dev libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libjpeg-dev libwebp-dev libgif-dev libstb-dev ;;
+      libpugixml-dev libnlopt-dev libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libjpeg-dev libwebp-dev libgif-dev libstb-dev ;;
     viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev ;;
     test) echo catch2 librapidcheck-dev python3 xvfb xdotool assimp-testmodels ;;
     bench) echo libmeshoptimizer-dev libcgal-dev libdraco-dev npm ;;
