@@ -27,6 +27,11 @@ struct RepairOptions {
   /// width disappear. 1 mm suits buildings in metres.
   double t_junction_tolerance_m = 0.0;
 
+  /// Cap holes whose border is no longer than this, with the material, feature and uv of the triangles around and a
+  /// normal of their own; 0 = leave. The outline of an open sheet is no hole. Caps are appended after the other
+  /// triangles.
+  double fill_holes_perimeter_m = 0.0;
+
   /// Turn triangles so that neighbours agree: closed parts outwards, open ones as the larger share of their area.
   bool orient = false;
 };
@@ -37,6 +42,7 @@ struct RepairReport {
   std::uint32_t degenerate_triangles = 0;  ///< removed
   std::uint32_t duplicate_triangles = 0;   ///< removed
   std::uint32_t closed_t_junctions = 0;    ///< points inserted into edges
+  std::uint32_t filled_holes = 0;
   std::uint32_t flipped_triangles = 0;
 };
 

@@ -3,6 +3,8 @@
 // of first appearance, so that nothing depends on the order of a table.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -64,8 +66,16 @@ template <class Hash, class Equal>
   const std::size_t capacity = std::bit_ceil(std::size_t{count} + count / 2 + 8);
   const std::size_t mask = capacity - 1;
   std::vector<UniqueSlot> table(capacity);
+  // Hashes are made some elements ahead, so that their places in the table are on the way from memory meanwhile.
+  constexpr std::uint32_t ahead = 16;
+  std::array<std::uint64_t, ahead> hashes{};
+  for (std::uint32_t i = 0; i < std::min(ahead, count); ++i) hashes[i] = hash(i);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint64_t h = hash(i);
+    const std::uint64_t h = hashes[i % ahead];
+    if (count - i > ahead) {
+      hashes[i % ahead] = hash(i + ahead);
+      __builtin_prefetch(&table[hashes[i % ahead] & mask]);
+    }
     const auto tag = static_cast<std::uint32_t>(h >> 32U);
     std::size_t at = h & mask;
     while (table[at].id != UniqueSlot::empty && !(table[at].tag == tag && equal(result.first[table[at].id], i))) {

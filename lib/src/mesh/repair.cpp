@@ -70,6 +70,7 @@ RepairReport repair(Mesh& mesh, const RepairOptions& options) {
   if (options.t_junction_tolerance_m > 0.0) {
     report.closed_t_junctions = close_t_junctions(mesh, options.t_junction_tolerance_m);
   }
+  if (options.fill_holes_perimeter_m > 0.0) report.filled_holes = fill_holes(mesh, options.fill_holes_perimeter_m);
   if (options.orient) report.flipped_triangles = orient_faces(mesh);
   return report;
 }

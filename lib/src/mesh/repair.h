@@ -14,6 +14,9 @@ std::uint32_t weld_near_points(Mesh& mesh, double tolerance_m);
 // Returns how many points were inserted into edges.
 std::uint32_t close_t_junctions(Mesh& mesh, double tolerance_m);
 
+// Caps holes whose border is no longer than that; returns how many.
+std::uint32_t fill_holes(Mesh& mesh, double perimeter_m);
+
 // Returns how many triangles were turned.
 std::uint32_t orient_faces(Mesh& mesh);
 

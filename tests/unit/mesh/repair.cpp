@@ -164,6 +164,37 @@ TEST_CASE("closing T-junctions leaves meshes that have none as they are") {
   }
 }
 
+TEST_CASE("small holes are capped, large ones and outlines stay") {
+  const auto without = [](Mesh mesh, FaceId begin, FaceId end) {
+    mesh.indices.erase(mesh.indices.begin() + 3 * begin, mesh.indices.begin() + 3 * end);
+    return mesh;
+  };
+  Mesh box = without(test::unwelded(test::cube()), 0, 2);
+  Mesh kept = box;
+  CHECK(repair(kept, {.fill_holes_perimeter_m = 7.9}).filled_holes == 0);
+  CHECK(repair(box, {.fill_holes_perimeter_m = 8.1}).filled_holes == 1);
+  CHECK(validate(box).ok());
+  CHECK(box.triangle_count() == 12);
+  CHECK(inspect(box).boundary_edges == 0);
+  CHECK(volume(box) == Approx(8.0));
+  for (FaceId f = 10; f < 12; ++f) {
+    const glm::dvec3 n = glm::normalize(area_vector(box, f));
+    CHECK(glm::dot(n, glm::dvec3{box.vertices.normals[box.indices[3 * f]]}) == Approx(1.0));
+  }
+
+  Mesh pierced = without(test::seamed_grid(9, 9), 80, 84);
+  pierced.face_materials.resize(pierced.triangle_count());
+  const double whole = area(test::seamed_grid(9, 9));
+  CHECK(repair(pierced, {.fill_holes_perimeter_m = 100.0}).filled_holes == 1);  // and not the outline
+  CHECK(validate(pierced).ok());
+  CHECK(area(pierced) == Approx(whole).epsilon(0.01));
+  for (auto& [name, mesh] : test::mesh_families()) {
+    INFO(name);
+    repair(mesh, {.fill_holes_perimeter_m = 1000.0});
+    CHECK(validate(mesh).ok());
+  }
+}
+
 TEST_CASE("orient turns closed parts outwards and open ones to their majority, normals with them") {
   Mesh ball = test::sphere(16, 24);
   const double full = volume(ball);
