@@ -4,6 +4,8 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace lodestone::render {
 namespace {
 
@@ -25,7 +27,9 @@ const ImFontAtlas& font_atlas() {
 
 }  // namespace
 
-void draw_caption(Image& image, std::uint32_t x_px, std::uint32_t y_px, const std::string& text) {
+void draw_caption(Image& image, std::uint32_t x_px, std::uint32_t y_px, std::uint32_t end_x_px,
+                  const std::string& text) {
+  const int end_x = static_cast<int>(std::min(end_x_px, image.width));
   const ImFontAtlas& atlas = font_atlas();
   const ImFont& font = *atlas.Fonts[0];
   float pen_px = static_cast<float>(x_px);
@@ -40,7 +44,7 @@ void draw_caption(Image& image, std::uint32_t x_px, std::uint32_t y_px, const st
       for (int x = 0; x < width; ++x) {
         const int to_x = static_cast<int>(pen_px + glyph->X0) + x;
         const int to_y = static_cast<int>(static_cast<float>(y_px) + glyph->Y0) + y;
-        if (to_x < 0 || to_y < 0 || to_x >= static_cast<int>(image.width) || to_y >= static_cast<int>(image.height)) {
+        if (to_x < 0 || to_y < 0 || to_x >= end_x || to_y >= static_cast<int>(image.height)) {
           continue;
         }
         const int ink = atlas.TexPixelsAlpha8[(from_y + y) * atlas.TexWidth + from_x + x];

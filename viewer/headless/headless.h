@@ -73,7 +73,7 @@ struct SweepOptions {
   bool and_back = false;  ///< half of the frames there, half back
   SweepStyle style = SweepStyle::Morph;
   std::uint32_t discrete_levels = 5;  ///< Discrete, Fade: from `from_ratio` to `to_ratio` in equal factors
-  double morph_seconds = 0.5;         ///< Morph: time that a record takes
+  double morph_seconds = 1.0;         ///< Morph: time that a record takes
   double fade_seconds = 0.5;          ///< Fade: time that a switch takes
   RenderOptions render{.width_px = 960, .height_px = 540, .supersample = 1};
   /// Called with every picture, in order; an error ends the sweep.

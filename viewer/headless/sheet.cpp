@@ -78,7 +78,7 @@ Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const
     const std::uint32_t x = gap_px + (i % columns) * step_x;
     const std::uint32_t y = gap_px + (i / columns) * step_y;
     paste(sheet, on.presenter().read(*frame), x, y);
-    draw_caption(sheet, x + 4, y + render.height_px + 5, caption_of(model->info(level), finest));
+    draw_caption(sheet, x + 4, y + render.height_px + 5, x + render.width_px, caption_of(model->info(level), finest));
   }
   return {std::move(sheet), surfaces.warnings()};
 }

@@ -9,7 +9,7 @@ namespace lodestone::render {
 namespace {
 
 // A frame that took longer (a file was loading, the window was hidden) advances motion only by this much.
-constexpr double longest_step_s = 0.1;
+constexpr double longest_step_s = 0.25;
 
 Sphere sphere_of(const Box& box) { return {.center = box.center(), .radius_m = box.diagonal_m() * 0.5}; }
 
@@ -65,8 +65,12 @@ Status App::run() {
     const double dt_s = std::min(std::chrono::duration<double>(now - last).count(), longest_step_s);
     last = now;
     if (auto status = take_loaded(); !status) return status;
+    if (auto status = fit_frame_to_window(); !status) return status;
+    // First, so that it knows whether the mouse is over it.
+    const PanelResult asked = lay_out_panel(camera_.view());
     use_input(dt_s);
-    if (auto status = draw_frame(); !status) return status;
+    draw_frame();
+    obey(asked);
     if (!options_.screenshot.empty() && settled()) return write_screenshot();
     window_->swap();
   }
@@ -151,10 +155,7 @@ void App::use_keys() {
         look_.coloring = look_.coloring == Coloring::Lod ? Coloring::Materials : Coloring::Lod;
         break;
       case 'f':
-        if (shown_) {
-          const View view = camera_.view();
-          camera_.frame(shown_->cursor.model().bounds(), view.width_px, view.height_px);
-        }
+        obey({.frame_model = true});
         break;
       default:
         break;
@@ -193,28 +194,33 @@ PanelResult App::lay_out_panel(const View& view) {
   return panel_.layout(state);
 }
 
-Status App::draw_frame() {
-  if (auto status = fit_frame_to_window(); !status) return status;
+void App::draw_frame() {
   const auto start = std::chrono::steady_clock::now();
-  const View view = camera_.view();
   Box bounds;
   std::optional<Item> item;
   if (shown_) {
-    bounds = shown_->cursor.model().bounds();
+    bounds = shown_->model->bounds();
     item = Item{.geometry = &shown_->geometry, .surfaces = surfaces_.get(), .size_m = bounds.diagonal_m()};
   }
-  renderer_.draw(*frame_, view, bounds, item ? std::span<const Item>{&*item, 1} : std::span<const Item>{}, look_);
-  const PanelResult asked = lay_out_panel(view);
+  const std::span<const Item> items = item ? std::span<const Item>{&*item, 1} : std::span<const Item>{};
+  renderer_.draw(*frame_, camera_.view(), bounds, items, look_);
   presenter_.present(*frame_, 0);
   panel_.draw();
   gl_->finish();
   frame_times_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  if (asked.frame_model) camera_.frame(bounds, view.width_px, view.height_px);
-  if (asked.restart_cursor && shown_) {
-    // The time of a morph is fixed at construction: a new cursor goes on where the old one is.
+}
+
+void App::obey(const PanelResult& asked) {
+  if (!shown_) return;
+  if (asked.changed) still_frames_ = 0;
+  if (asked.frame_model) {
+    const View view = camera_.view();
+    camera_.frame(shown_->model->bounds(), view.width_px, view.height_px);
+  }
+  // The time of a morph is fixed at construction: a new cursor goes on where the old one is.
+  if (asked.restart_cursor) {
     shown_ = std::make_unique<Shown>(*gl_, shown_->model, static_cast<double>(morph_seconds_), shown_->cursor.level());
   }
-  return Done{};
 }
 
 bool App::settled() const { return shown_ && !loader_.busy() && still_frames_ >= 3; }

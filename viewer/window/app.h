@@ -38,7 +38,8 @@ class App {
   void show(const Loader::Model& model);
   void use_input(double dt_s);
   void use_keys();
-  [[nodiscard]] Status draw_frame();
+  void draw_frame();
+  void obey(const PanelResult& asked);
   [[nodiscard]] Status fit_frame_to_window();
   [[nodiscard]] PanelResult lay_out_panel(const View& view);
   [[nodiscard]] bool settled() const;

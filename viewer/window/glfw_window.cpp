@@ -73,9 +73,12 @@ MouseDrag GlfwWindow::take_drag() {
   const auto down = [this](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
   const bool shift = glfwGetKey(window_, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
   const bool left = down(GLFW_MOUSE_BUTTON_LEFT);
-  MouseDrag drag{.dx_px = x - last_x_, .dy_px = y - last_y_};
-  drag.left = left && !shift;
-  drag.other = (left && shift) || down(GLFW_MOUSE_BUTTON_MIDDLE) || down(GLFW_MOUSE_BUTTON_RIGHT);
+  const bool other = down(GLFW_MOUSE_BUTTON_MIDDLE) || down(GLFW_MOUSE_BUTTON_RIGHT);
+  // A press is not yet a drag: the way to where it happened does not count.
+  const bool held = (left || other) && pressed_;
+  pressed_ = left || other;
+  const MouseDrag drag{
+      .dx_px = x - last_x_, .dy_px = y - last_y_, .left = held && left && !shift, .other = held && (other || shift)};
   last_x_ = x;
   last_y_ = y;
   return drag;

@@ -48,6 +48,7 @@ class GlfwWindow {
   GLFWwindow* window_ = nullptr;
   double last_x_ = 0.0;
   double last_y_ = 0.0;
+  bool pressed_ = false;
   double wheel_ = 0.0;
   std::filesystem::path dropped_;
   std::string typed_;

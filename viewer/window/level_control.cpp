@@ -8,7 +8,9 @@ namespace lodestone::render {
 
 void LevelControl::attach(const ProgressiveModel& model) {
   finest_log_ = std::log(std::max(1.0, double(model.info(model.record_count()).triangles)));
-  base_log_ = std::log(std::max(1.0, double(model.info(0).triangles)));
+  // A base of one or two triangles shows nothing: the slider's lower end keeps a shape.
+  const double base = std::max<double>(model.info(0).triangles, 12.0);
+  base_log_ = std::min(std::log(base), finest_log_);
   slider = 1.0F;
 }
 

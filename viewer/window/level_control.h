@@ -10,7 +10,8 @@ namespace lodestone::render {
 
 enum class LevelMode : std::uint8_t { Slider, Sweep, Automatic };
 
-/// Slider positions are logarithmic in triangles: equal moves change the count by equal factors. 1 = finest, 0 = base.
+/// Slider positions are logarithmic in triangles: equal moves change the count by equal factors. 1 = finest,
+/// 0 = base (a dozen triangles where the base has fewer).
 class LevelControl {
  public:
   void attach(const ProgressiveModel& model);

@@ -113,6 +113,7 @@ PanelResult Panel::layout(const PanelState& state) {
   }
   ImGui::TextDisabled("drag: orbit  shift-drag: pan  wheel: zoom");
   ImGui::TextDisabled("space: play  + -: level  w t l f: look");
+  result.changed = ImGui::IsAnyItemActive() || ImGui::IsAnyItemHovered();
   ImGui::End();
   ImGui::Render();
   return result;

@@ -30,6 +30,7 @@ struct PanelState {
 struct PanelResult {
   bool frame_model = false;     ///< put the camera back
   bool restart_cursor = false;  ///< morph_seconds changed
+  bool changed = false;         ///< a control is in use: draw on
 };
 
 class Panel {

@@ -36,9 +36,9 @@ for _ in $(seq 300); do
 done
 [ -n "$window" ] || { echo "the window never showed the model"; exit 1; }
 # The slider's row in the panel, measured from the window's corner.
-slider_y=$(( 57 + 12 ))
+slider_y=85
 picture() {
-  sleep 2.5
+  sleep 4
   import -window "$window" "$out/$1.png"
 }
 picture fine

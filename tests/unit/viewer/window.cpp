@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The window program, driven with mouse and keys on a virtual display, and its own screenshot.
+#include <lodestone/formats.h>
+
+#include <sys/wait.h>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "data.h"
+
+using namespace lodestone;
+
+namespace {
+
+// Bumps of 6,962 triangles as an OBJ, so that the window builds the model itself.
+std::filesystem::path bumps_file(const std::filesystem::path& folder) {
+  constexpr int side = 60;
+  const auto file = folder / "bumps.obj";
+  std::ofstream out{file};
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i)
+      out << "v " << i * 0.1 << ' ' << j * 0.1 << ' ' << 0.3 * std::sin(i * 0.5) * std::cos(j * 0.4) << '\n';
+  }
+  for (int j = 0; j + 1 < side; ++j) {
+    for (int i = 0; i + 1 < side; ++i) {
+      const int a = j * side + i + 1;
+      out << "f " << a << ' ' << a + 1 << ' ' << a + side + 1 << "\nf " << a << ' ' << a + side + 1 << ' ' << a + side
+          << '\n';
+    }
+  }
+  return file;
+}
+
+int run(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// Mean red less mean green and blue of pixels right of the panel that are not background grey.
+double redness(const Image& image) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 360; x < image.width; ++x) {
+      const auto* p = image.at(x, y);
+      const int spread = std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]});
+      if (spread < 40) continue;
+      sum += p[0] - std::max(p[1], p[2]);
+      count += 1.0;
+    }
+  }
+  REQUIRE(count > 1000.0);
+  return sum / count;
+}
+
+Image picture(const std::filesystem::path& file) {
+  auto image = read_image(file);
+  INFO(file);
+  REQUIRE(image.ok());
+  return std::move(*image);
+}
+
+}  // namespace
+
+TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys refine it again") {
+  const auto folder = test::scratch_folder("window_driven");
+  const int code =
+      run(std::string{"sh "} + LODESTONE_DRIVE_WINDOW + " " + LODESTONE_VIEW_PROGRAM + " " +
+          bumps_file(folder).string() + " " + folder.string() + " > " + (folder / "log").string() + " 2>&1");
+  if (code == 77) {
+    WARN("SKIPPED: Xvfb, xdotool or ImageMagick's import is missing");
+    return;
+  }
+  std::ifstream log{folder / "log"};
+  INFO(std::string(std::istreambuf_iterator<char>{log}, {}));
+  REQUIRE(code == 0);
+  const Image fine = picture(folder / "fine.png");
+  const Image coarse = picture(folder / "coarse.png");
+  const Image again = picture(folder / "again.png");
+  // Coloured by triangle size: small ones are green and blue, large ones red.
+  CHECK(redness(fine) < -20.0);
+  CHECK(redness(coarse) > 20.0);
+  CHECK(redness(again) == Approx(redness(fine)).margin(5.0));
+}
+
+TEST_CASE("without a display the window program says so in one line") {
+  const auto folder = test::scratch_folder("window_no_display");
+  const auto log = folder / "log";
+  const int code = run(std::string{"env -u DISPLAY -u WAYLAND_DISPLAY "} + LODESTONE_VIEW_PROGRAM +
+                       " nothing.lode 2> " + log.string());
+  CHECK(code == 2);
+  std::ifstream in{log};
+  std::string line;
+  REQUIRE(std::getline(in, line));
+  CHECK(line.find("lodestone-view: cannot open a window") == 0);
+  CHECK_FALSE(std::getline(in, line));
+}
