@@ -27,13 +27,15 @@ void place_in_images(SheetLayout& layout) {
     const std::uint32_t begin = share(chart_count, k, layout.texture_count);
     const std::uint32_t end = share(chart_count, k + 1, layout.texture_count);
     const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(end - begin))));
-    const double cell = static_cast<double>(layout.texture_size_px / std::max(1U, side));
+    const std::uint32_t cell_px = layout.texture_size_px / std::max(1U, side);
+    const double cell = cell_px;
     const double gutter = gutter_px(cell);
     for (std::uint32_t i = begin; i < end; ++i) {
       Chart& chart = layout.charts[i];
       chart.texture = k;
       chart.x_px = cell * ((i - begin) % side) + gutter;
-      chart.y_px = cell * ((i - begin) / side) + gutter;  // NOLINT(bugprone-integer-division): whole rows
+      const std::uint32_t row = (i - begin) / side;
+      chart.y_px = cell * row + gutter;
       chart.width_px = cell - 2.0 * gutter;
       chart.height_px = chart.width_px;
       chart.gutter_px = gutter;
