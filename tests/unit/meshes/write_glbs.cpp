@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Writes a GLB of every kind into a folder, for gltf-validator (gltf_validator.sh).
+#include <cstdio>
+
+#include <lodestone/formats.h>
+
+#include "shapes.h"
+
+using namespace lodestone;
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 1;
+  const std::filesystem::path folder{argv[1]};
+  auto all = test::mesh_families();
+  Mesh rich = test::seamed_grid(8, 8);
+  compute_normals(rich);
+  rich.origin = {678116.123, 5403773.5, 416.25};
+  rich.crs = "EPSG:25832";
+  for (std::uint32_t i = 0; i < rich.vertex_count(); ++i) rich.vertices.colors.emplace_back(i, 255 - i, 2 * i, 200);
+  rich.materials[0].base_color = {0.25F, 0.5F, 1.0F, 0.5F};
+  rich.materials[1].texture = 0;
+  rich.materials[1].alpha_cutoff = 0.25F;
+  Texture texture;
+  texture.name = "stone";
+  texture.image = std::make_shared<const Image>(Image{4, 4, 3, std::vector<std::uint8_t>(48, 99)});
+  rich.textures.push_back(texture);
+  all.push_back({"rich", rich});
+  all.push_back({"large", test::grid(300, 300)});  // needs 32-bit indices
+  int number = 0;
+  for (const auto& [name, mesh] : all) {
+    const auto file = folder / ("mesh" + std::to_string(number++) + ".glb");
+    if (auto done = write_mesh(mesh, file); !done) {
+      std::fprintf(stderr, "%s: %s\n", name.c_str(), to_line(done.error()).c_str());
+      return 1;
+    }
+  }
+  return 0;
+}
