@@ -10,9 +10,13 @@ namespace {
 
 std::atomic<std::uint64_t> allocations{0};
 
-void* counted(std::size_t bytes) {
+void* counted_or_null(std::size_t bytes) noexcept {
   allocations.fetch_add(1, std::memory_order_relaxed);
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+
+void* counted(std::size_t bytes) {
+  if (void* memory = counted_or_null(bytes)) return memory;
   throw std::bad_alloc{};
 }
 
@@ -30,10 +34,25 @@ std::uint64_t allocation_count() noexcept { return allocations.load(std::memory_
 
 }  // namespace lodestone::cli
 
-// The array and nothrow forms of the standard library end in these.
+// Every form, so that none is left to a sanitizer, which would take the pair for a mismatch. The array forms of the
+// standard library end in these, those of a sanitizer do not.
 void* operator new(std::size_t bytes) { return lodestone::cli::counted(bytes); }
+void* operator new[](std::size_t bytes) { return lodestone::cli::counted(bytes); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) { return lodestone::cli::counted(bytes, alignment); }
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+  return lodestone::cli::counted(bytes, alignment);
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return lodestone::cli::counted_or_null(bytes); }
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+  return lodestone::cli::counted_or_null(bytes);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
