@@ -176,8 +176,8 @@ TEST_CASE("a mesh made with OpenMesh comes in with its vertex attributes, delete
 
 TEST_CASE("real buildings and horizons that OpenMesh would refuse go there whole") {
   LODESTONE_REQUIRE_DATA(data);
-  for (const char* file :
-       {"buildings/4018215/4018215.obj", "buildings/4018267/4018267.obj", "outcrops/sol1151/sol1151-wheel-measure.obj"}) {
+  for (const char* file : {"buildings/4018215/4018215.obj", "buildings/4018267/4018267.obj",
+                           "outcrops/sol1151/sol1151-wheel-measure.obj"}) {
     INFO(file);
     const auto read = read_mesh(data / file);
     REQUIRE(read.ok());
