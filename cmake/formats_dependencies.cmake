@@ -1,11 +1,10 @@
-# What lodestone::formats is linked with; read again when its package is found.
+# What lodestone::formats is linked with; read when it is built and again when its package is found.
 find_package(PkgConfig REQUIRED)
+find_package(assimp REQUIRED)
 find_package(GIF REQUIRED)
-find_package(cereal REQUIRED)
-find_package(nlohmann_json 3 REQUIRED)
 find_package(pugixml REQUIRED)
+find_package(TinyGLTF REQUIRED)
 pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
