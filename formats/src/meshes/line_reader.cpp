@@ -21,7 +21,7 @@ bool LineReader::refill() {
     return false;
   }
   if (file_offset_ >= input_.size()) return false;
-  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  if (end_ > begin_) std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
   if (buffer_.size() - end_ < block_bytes) {

@@ -101,7 +101,7 @@ class PlyBinary {
   }
   [[nodiscard]] bool refill(std::size_t needed) {
     if (context_.cancelled()) return false;
-    std::memmove(buffer_.data(), &buffer_[begin_], end_ - begin_);
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
     const std::size_t got = input_.read(offset_, std::span{buffer_}.subspan(end_));
