@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -121,6 +120,20 @@ void report(const std::shared_ptr<const ProgressiveModel>& model, const char* na
               percentile(steps, 1.0));
 }
 
+// One normal per vertex, area weighted: unlike compute_normals() it never splits a vertex, as scans are used.
+void give_normals(Mesh& mesh) {
+  std::vector<glm::dvec3> sums(mesh.vertex_count(), glm::dvec3{0.0});
+  for (std::size_t f = 0; f < mesh.indices.size(); f += 3) {
+    const auto at = [&](std::size_t c) { return glm::dvec3{mesh.vertices.positions[mesh.indices[f + c]]}; };
+    const glm::dvec3 normal = glm::cross(at(1) - at(0), at(2) - at(0));
+    for (std::size_t c = 0; c < 3; ++c) sums[mesh.indices[f + c]] += normal;
+  }
+  for (const glm::dvec3& sum : sums) {
+    const double length = glm::length(sum);
+    mesh.vertices.normals.push_back(length > 0.0 ? glm::vec3{sum / length} : glm::vec3{0.0F, 0.0F, 1.0F});
+  }
+}
+
 int run(const std::string& file, double ratio) {
   auto loaded = read_mesh(file);
   if (!loaded) {
@@ -128,7 +141,8 @@ int run(const std::string& file, double ratio) {
     return 2;
   }
   Mesh& mesh = loaded->mesh;
-  if (mesh.vertices.normals.empty()) compute_normals(mesh, std::numbers::pi);
+  merge_identical_vertices(mesh);
+  if (mesh.vertices.normals.empty()) give_normals(mesh);
   std::printf("{\"mesh\": \"%s\", \"vertices\": %u, \"triangles\": %u,\n", file.c_str(), mesh.vertex_count(),
               mesh.triangle_count());
   const std::pair<Placement, const char*> placements[] = {{Placement::Subset, "subset"},

@@ -12,6 +12,16 @@ namespace {
 
 // Corners that are fetched ahead of their use: about eight records.
 constexpr std::uint64_t fetch_ahead = 40;
+// The same for the vertex that a record moves, which is found through a corner fetched before: corners ahead when
+// refining, faces ahead when coarsening.
+constexpr std::uint64_t fetch_values_ahead = 20;
+constexpr CornerId fetch_faces_ahead = 14;
+
+void fetch_vertex(const VertexPointers& vertices, VertexId slot) noexcept {
+  __builtin_prefetch(vertices.positions + slot, 1);
+  if (vertices.normals != nullptr) __builtin_prefetch(vertices.normals + slot, 1);
+  if (vertices.uvs != nullptr) __builtin_prefetch(vertices.uvs + slot, 1);
+}
 
 void move_vertex(const PlayArrays& arrays, VertexId slot, const std::uint32_t* words) noexcept {
   xor_value(arrays.exact, slot, words);
@@ -23,7 +33,12 @@ template <class Index, unsigned Bytes>
 class Player {
  public:
   Player(const ModelData& data, const PlayArrays& arrays, StackPosition& at) noexcept
-      : data_(data), arrays_(arrays), at_(at), indices_(static_cast<Index*>(arrays.indices)) {}
+      : data_(data),
+        arrays_(arrays),
+        at_(at),
+        indices_(static_cast<Index*>(arrays.indices)),
+        words_(data.value_words()),
+        moves_vertices_(arrays.exact.positions != nullptr) {}
 
   void refine(Level to) noexcept;
   void coarsen(Level to) noexcept;
@@ -42,9 +57,8 @@ class Player {
     }
   }
   void move_all(const EditBlock& block) noexcept {
-    const std::uint32_t words = block.move_count() == 0 ? 0 : data_.value_words();
     const std::uint32_t* values = data_.value_xor.data() + at_.value_word;
-    for (std::uint32_t i = 0; i < block.move_count(); ++i, values += words) {
+    for (std::uint32_t i = 0; i < block.move_count(); ++i, values += words_) {
       move_vertex(arrays_, block.moved()[i], values);
     }
   }
@@ -53,6 +67,8 @@ class Player {
   const PlayArrays& arrays_;
   StackPosition& at_;
   Index* indices_;
+  std::uint32_t words_;
+  bool moves_vertices_;
 };
 
 template <class Index, unsigned Bytes>
@@ -65,6 +81,7 @@ void Player<Index, Bytes>::refine(Level to) noexcept {
   const std::uint64_t corner_total = data_.fan_corners.size() / Bytes;
   const std::uint8_t* const shapes = data_.shapes.data();
   std::uint64_t corner_at = at_.fan_corner;
+  const bool moves_vertices = moves_vertices_;
   std::uint32_t triangles = at_.triangles;
   for (Level record = at_.level; record < to; ++record) {
     const std::uint8_t shape = shapes[record];
@@ -81,6 +98,7 @@ void Player<Index, Bytes>::refine(Level to) noexcept {
       for (std::uint64_t i = 0; i < count; ++i) {
         __builtin_prefetch(indices + load_corner<Bytes>(from + (i + fetch_ahead) * Bytes), 1);
       }
+      if (moves_vertices) fetch_vertex(arrays_.exact, indices[load_corner<Bytes>(from + fetch_values_ahead * Bytes)]);
     }
     const CornerId first = load_corner<Bytes>(from);
     const CornerId last = load_corner<Bytes>(from + (count - 1) * Bytes);
@@ -115,7 +133,7 @@ void Player<Index, Bytes>::refine(Level to) noexcept {
     triangles += fan_faces(kind);
     if (moves(shape)) {
       move_vertex(arrays_, v, data_.value_xor.data() + at_.value_word);
-      at_.value_word += data_.value_words();
+      at_.value_word += words_;
     }
   }
   at_.fan_corner = corner_at;
@@ -131,6 +149,7 @@ void Player<Index, Bytes>::coarsen(Level to) noexcept {
   const std::uint8_t* const corners = data_.fan_corners.data();
   const std::uint8_t* const shapes = data_.shapes.data();
   std::uint64_t corner_at = at_.fan_corner;
+  const bool moves_vertices = moves_vertices_;
   std::uint32_t triangles = at_.triangles;
   for (Level record = at_.level; record-- > to;) {
     const std::uint8_t shape = shapes[record];
@@ -151,6 +170,9 @@ void Player<Index, Bytes>::coarsen(Level to) noexcept {
     }
     DrawRange& draw = fan_draw(--at_.fan_record);
     const CornerId end = draw.first_index + draw.index_count;
+    if (moves_vertices && draw.index_count > 3 * fetch_faces_ahead) {
+      fetch_vertex(arrays_.exact, indices[end - 1 - 3 * fetch_faces_ahead]);
+    }
     // v is corner 1 of a left face, corner 2 of a right one; the last face is left only if there is no right one.
     const Index v = indices[kind == RecordKind::FanLeft ? end - 2 : end - 1];
     draw.index_count -= 3 * fan_faces(kind);
@@ -162,7 +184,7 @@ void Player<Index, Bytes>::coarsen(Level to) noexcept {
       marks[corner >> shift] = 1;
     }
     if (moves(shape)) {
-      at_.value_word -= data_.value_words();
+      at_.value_word -= words_;
       move_vertex(arrays_, v, data_.value_xor.data() + at_.value_word);
     }
   }
@@ -186,7 +208,7 @@ void Player<Index, Bytes>::refine_edit() noexcept {
     }
   }
   move_all(block);
-  at_.value_word += static_cast<std::uint64_t>(block.move_count()) * data_.value_words();
+  at_.value_word += static_cast<std::uint64_t>(block.move_count()) * words_;
   at_.vertices += block.vertex_count();
   at_.triangles += block.face_count();
   at_.edit_word += block.length();
@@ -196,7 +218,7 @@ template <class Index, unsigned Bytes>
 void Player<Index, Bytes>::coarsen_edit() noexcept {
   at_.edit_word -= data_.edits[at_.edit_word - 1];
   const EditBlock block{data_.edits.data() + at_.edit_word};
-  at_.value_word -= static_cast<std::uint64_t>(block.move_count()) * data_.value_words();
+  at_.value_word -= static_cast<std::uint64_t>(block.move_count()) * words_;
   at_.vertices -= block.vertex_count();
   at_.triangles -= block.face_count();
   for (const std::uint32_t* word = block.groups(); word != block.corners(); word += 2 + 3 * word[1]) {
