@@ -314,7 +314,7 @@ class Recorder {
     auto shape = static_cast<unsigned>(corners_.size()) | static_cast<unsigned>(kind) << RecordShape::kind_shift;
     if (!moves_.empty()) shape |= RecordShape::moves_flag;
     data_.shapes.push_back(static_cast<std::uint8_t>(shape));
-    for (auto c = corners_.rbegin(); c != corners_.rend(); ++c) fan_corners_.push_back(c->corner);
+    for (std::size_t i = corners_.size(); i-- > 0;) fan_corners_.push_back(corners_[i].corner);
     if (source_.materials.size() > 1) {
       data_.fan_materials.push_back(static_cast<std::uint16_t>(source_.face_material(record.faces[0])));
     }
@@ -355,10 +355,10 @@ class Recorder {
 
   void push_values() {
     const std::uint32_t words = log_.value_words_;
-    for (auto m = moves_.rbegin(); m != moves_.rend(); ++m) {
+    for (std::size_t i = moves_.size(); i-- > 0;) {
       std::uint32_t old[max_value_words];
-      get_value(pointers(values_), log_.moved_[*m], old);
-      const std::uint32_t* now = move_words(*m);
+      get_value(pointers(values_), log_.moved_[moves_[i]], old);
+      const std::uint32_t* now = move_words(moves_[i]);
       for (std::uint32_t w = words; w-- > 0;) data_.value_xor.push_back(old[w] ^ now[w]);
     }
   }

@@ -48,8 +48,10 @@ template <class Array>
 template <class Visit>
 inline void for_each_attribute(const VertexPointers& vertices, VertexId slot, Visit&& visit) noexcept {
   std::uint32_t word = 0;
-  visit(vertices.positions[slot], word);
-  word += 3;
+  if (vertices.positions != nullptr) {
+    visit(vertices.positions[slot], word);
+    word += 3;
+  }
   if (vertices.normals != nullptr) {
     visit(vertices.normals[slot], word);
     word += 3;
@@ -71,7 +73,7 @@ inline void xor_value(const VertexPointers& vertices, VertexId slot, const std::
 }
 
 inline void copy_value(const VertexPointers& to, const ConstVertexPointers& from, VertexId slot) noexcept {
-  to.positions[slot] = from.positions[slot];
+  if (to.positions != nullptr) to.positions[slot] = from.positions[slot];
   if (to.normals != nullptr) to.normals[slot] = from.normals[slot];
   if (to.uvs != nullptr) to.uvs[slot] = from.uvs[slot];
   if (to.colors != nullptr) to.colors[slot] = from.colors[slot];
