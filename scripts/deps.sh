@@ -13,12 +13,12 @@ set -euo pipefail
 packages_of() {
   case "$1" in
     build) echo g++ cmake ninja-build pkg-config git ca-certificates \
-      libglm-dev libtbb-dev libopenmesh-dev libmetis-dev libcereal-dev libzstd-dev libxxhash-dev \
-      nlohmann-json3-dev libcli11-dev libassimp-dev libtinygltf-dev libtinyobjloader-dev libfast-float-dev \
-      libpugixml-dev libnlopt-dev libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libjpeg-dev libwebp-dev libgif-dev libstb-dev ;;
-    viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev ;;
-    test) echo catch2 librapidcheck-dev python3 xvfb xdotool assimp-testmodels ;;
-    bench) echo libmeshoptimizer-dev libcgal-dev libdraco-dev npm ;;
+      libglm-dev libtbb-dev libopenmesh-dev libnlopt-dev libcereal-dev libzstd-dev libxxhash-dev \
+      nlohmann-json3-dev libcli11-dev libassimp-dev libtinygltf-dev libpugixml-dev \
+      libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev ;;
+    viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;
+    test) echo catch2 librapidcheck-dev python3 npm xvfb xdotool imagemagick assimp-testmodels ;;
+    bench) echo libmeshoptimizer-dev libcgal-dev libdraco-dev libtinyobjloader-dev npm ;;
     clients) echo npm ;;
     *) echo "lodestone: deps.sh: no such group: $1 (build viewer test bench clients)" >&2; return 1 ;;
   esac
@@ -48,7 +48,11 @@ if ! command -v dpkg-query >/dev/null; then
   echo "lodestone: deps.sh: this is not Debian or Ubuntu; install the equivalents of: ${wanted[*]}" >&2
   exit 1
 fi
-installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+# npm also comes with a Node.js that is not Debian's.
+installed() {
+  if [ "$1" = npm ] && command -v npm >/dev/null; then return 0; fi
+  [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
 
 missing=()
 for name in "${wanted[@]}"; do
