@@ -18,6 +18,13 @@ LIB_ARROWS = {
     "collapse": {"base", "geometry", "mesh", "progressive"},
     "metrics": {"base", "geometry", "mesh"},
     "generate": {"base", "geometry", "mesh"},
+    "perception": {"base", "geometry", "mesh", "metrics"},
+    "facets": {"base", "geometry", "mesh", "progressive"},
+    "partition": {"base", "geometry", "mesh"},
+    "graph": {"base"},
+    "clusters": {"base", "geometry", "mesh", "collapse", "partition", "graph"},
+    "outcrop": {"base", "geometry", "mesh", "collapse", "partition", "graph"},
+    "terrain": {"base", "geometry", "mesh", "collapse", "partition", "graph"},
 }
 # Only this part of collapse/ may know the recorder.
 COLLAPSE_RECORDS = re.compile(r"^build")
