@@ -31,13 +31,13 @@ class Watcher : public Assimp::ProgressHandler {
 
 // Formats whose importers hand over the file's own Z-up coordinates; all others are turned to Y up by assimp.
 bool is_z_up(const std::string& extension) {
-  static constexpr std::array names{".stl", ".off", ".3mf", ".amf", ".raw", ".ter", ".nff"};
+  static constexpr std::array names{".stl", ".off", ".3mf", ".amf", ".raw", ".ter", ".nff", ".blend"};
   return std::find(names.begin(), names.end(), extension) != names.end();
 }
 
 // Formats that are Z up themselves and that assimp has turned to Y up.
 bool was_z_up(const std::string& extension) {
-  static constexpr std::array names{".3ds", ".ase", ".blend", ".ifc", ".ifczip"};
+  static constexpr std::array names{".3ds", ".ase", ".dxf", ".ifc", ".ifczip"};
   return std::find(names.begin(), names.end(), extension) != names.end();
 }
 

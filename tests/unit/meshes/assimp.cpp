@@ -103,3 +103,23 @@ TEST_CASE("a 3DS building is the OBJ building, triangle for triangle in place") 
     CHECK(test::area(from_3ds->mesh) == Approx(test::area(from_obj->mesh)).epsilon(1e-4));
   }
 }
+
+TEST_CASE("IFC, Blender and DXF models stand upright") {
+  const std::filesystem::path models{"/usr/share/assimp/models"};  // Debian package assimp-testmodels
+  if (!std::filesystem::exists(models / "IFC" / "AC14-FZK-Haus.ifc")) {
+    WARN("SKIPPED: assimp-testmodels is not installed");
+    return;
+  }
+  const auto house = read_mesh(models / "IFC" / "AC14-FZK-Haus.ifc");
+  REQUIRE(house.ok());
+  CHECK(house->info.up_axis == "Z");
+  CHECK(bounds(house->mesh).size().z == Approx(7.318).epsilon(0.01));
+  CHECK(std::any_of(house->mesh.features.begin(), house->mesh.features.end(),
+                    [](const Feature& f) { return f.semantic_class.starts_with("IfcWall"); }));
+  const auto plane = read_mesh(models / "BLEND" / "plane_2_textures_2_texcoords_279.blend");
+  REQUIRE(plane.ok());
+  CHECK(bounds(plane->mesh).size().z < 1e-6);
+  const auto figure = read_mesh(models / "DXF" / "wuson.dxf");
+  REQUIRE(figure.ok());
+  CHECK(figure->info.up_axis == "Z");
+}
