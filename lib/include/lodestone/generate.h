@@ -24,9 +24,9 @@ enum class Pixels : std::uint8_t {
 
 struct GenerateOptions {
   /// Wanted triangles, at most 100 million; 0 = the kind's natural size (house 30,000, street 260,000, outcrop 200,000,
-  /// terrain 130,000). House and street: an even number from 10,000 and 60,000 on is met exactly, because fine ornament
-  /// is divided until it is; below that the plainest house (1,500 to 3,000) or street (20,000 to 30,000) is the
-  /// least there is. Outcrop and terrain: met within 2 % from 200 triangles a chart on.
+  /// terrain 130,000). House and street: an even number is met exactly, because curved ornament is divided until it is
+  /// (an odd one less one); below the plainest house (2,500 to 4,500) or street (about 30,000) that one is returned.
+  /// Outcrop and terrain: met within 2 % from 200 triangles a chart on.
   std::uint32_t triangles = 0;
   /// Texture images, at most 10,000; 0 = the kind's natural number (outcrop 4, terrain 1). House and street carry one
   /// image per building material; a smaller number here leaves the later materials plain, a larger one changes nothing.
@@ -46,9 +46,9 @@ struct GenerateOptions {
 /// The body (walls with recessed, framed and mullioned windows and doors, eaves, roof, dormers, chimneys, tower) is one
 /// closed surface without self-intersection: every edge has two faces by position, walls are exactly vertical, all
 /// corners lie on a grid of 1/1024 m, so that every facet is planar to the last bit of a float. Balconies, railings,
-/// mouldings, shutters, roof tiles and steps are closed parts of their own that stand on the body or are let into it, as
-/// in surveyed LoD3 data; no two parts share an edge. Facets carry flat normals, turned ornament smooth ones. Textures
-/// repeat: one uv unit is the length in metres that the material's image shows.
+/// mouldings, shutters, roof tiles and steps are closed parts of their own that stand on the body or are let into it,
+/// as in surveyed LoD3 data; no two parts share an edge. Facets carry flat normals, turned ornament smooth ones.
+/// Textures repeat: one uv unit is the length in metres that the material's image shows.
 struct HouseOptions : GenerateOptions {
   Roof roof = Roof::Gable;  ///< Spire: a gabled hall with a tower under a steep pyramid
 };
@@ -57,9 +57,9 @@ struct HouseOptions : GenerateOptions {
 /// Houses of every roof on both sides of a street with pavements and kerbs. `triangles` also decides how many.
 [[nodiscard]] Result<Mesh> generate_street(const GenerateOptions& options, const Context& context = {});
 
-/// A stratified, jointed and faulted cliff, 80 m long and 30 m high, with talus below and turf above. One surface with an
-/// open border, divided into a grid of uv charts over the texture images, which show beds, cracks, stains and lichen and
-/// agree along the seams. 10 million triangles take some seconds.
+/// A stratified, jointed and faulted cliff, 80 m long and 30 m high, with talus below and turf above. One surface with
+/// an open border, divided into a grid of uv charts over the texture images, which show beds, cracks, stains and lichen
+/// and agree along the seams. 10 million triangles take some seconds.
 [[nodiscard]] Result<Mesh> generate_outcrop(const GenerateOptions& options, const Context& context = {});
 
 /// Eroded hills with a valley, 2 km square, on a regular grid, open border, with ortho-photo-like textures.

@@ -153,29 +153,32 @@ RoofShape add_tower(Draft& d, const Footprint& tower, int hall_top, int ridge_to
   return add_spire(house, tower, top);
 }
 
-void add_dormers_and_chimneys(Draft& d, RoofShape& roof) {
+// Near the ridge on the back, or on the deck.
+void add_chimneys(Draft& d, RoofShape& roof) {
   const bool flat = d.plan.roof == Roof::Flat;
-  for (std::size_t k = 0; k < roof.slopes.size() && !flat; ++k) {
-    Slope& slope = roof.slopes[k];
-    if (slope.eave.along.x == 0) continue;  // on the long sides only
-    const int width = slope.outline[1].x;
-    const int step = 2 * bay;
-    const int count = std::max(1, (width - 2 * bay) / step);
-    for (int i = 0; i < count; ++i)
-      add_dormer(d.house, slope, (width / 2 + step * (2 * i - count + 1) / 2) / 64 * 64, grid(1.0));
-  }
-  // Chimneys: near the ridge on the back, or on the deck.
   Slope& slope = flat ? roof.slopes[0] : roof.slopes[roof.slopes.size() > 2 ? 2 : 1];
   const int width = slope.outline[1].x;
   const int depth = slope.outline[2].y;
   const int v = (flat ? depth * 3 / 4 : depth - grid(0.75)) / 64 * 64;
   const int reach = flat ? 0 : slope.outline[1].x - slope.outline[2].x;  // of the hips
+  const int ridge = width - 2 * reach;
   for (const int share : {1, 3}) {
-    const int u = (reach + grid(0.75) + (width - 2 * reach - grid(1.5)) * share / 4) / 64 * 64;
-    if (width - 2 * reach < grid(5.0) && share == 3) continue;
-    if (width - 2 * reach < grid(2.0)) continue;
-    const Point top = add_chimney(d.house, slope, u, v, roof.top + grid(0.875));
-    if (d.plan.tier.trim) add_chimney_pots(d.house, top);
+    if (ridge < grid(share == 1 ? 2.0 : 5.0)) continue;
+    const int u = (reach + grid(0.75) + (ridge - grid(1.5)) * share / 4) / 64 * 64;
+    add_chimney_pots(d.house, add_chimney(d.house, slope, u, v, roof.top + grid(0.875)));
+  }
+}
+
+// In the long sides of a roof, wherever there is room.
+void add_dormers(Draft& d, RoofShape& roof) {
+  for (Slope& slope : roof.slopes) {
+    if (slope.eave.along.x == 0 || slope.quarters == 0) continue;
+    const int width = slope.outline[1].x;
+    const int step = 2 * bay;
+    const int count = std::max(1, (width - 2 * bay) / step);
+    for (int i = 0; i < count; ++i) {
+      add_dormer(d.house, slope, (width / 2 + step * (2 * i - count + 1) / 2) / 64 * 64, grid(1.0));
+    }
   }
 }
 
@@ -262,7 +265,8 @@ House draw_house(Mesh& mesh, const Palette& palette, const HousePlan& plan, cons
   add_ground(house, hall);
   const int quarters = plan.tier.side_bays > 4 ? 3 : 4;
   RoofShape roof = add_hall_roof(d, hall, eave_z, quarters);
-  add_dormers_and_chimneys(d, roof);
+  add_chimneys(d, roof);
+  add_dormers(d, roof);
   finish_roof(d, roof, false);
   add_mouldings(d, hall, eave_z);
   const Look metal{palette.metal, house.building};

@@ -2,6 +2,7 @@
 #include "generate/roof.h"
 
 #include <algorithm>
+#include <array>
 
 namespace lodestone::generate {
 
@@ -115,6 +116,19 @@ void add_gable_walls(House& house, const Gable& g, FeatureId right_wall, Feature
   } else {
     add_wall(house, g.plan.side(3), {{0, g.eave_z}, {depth, g.eave_z}, {g.half(), top}}, attic, left);
   }
+}
+
+// Whether the boxes around two outlines come nearer than `clear`.
+bool near(const Loop2& a, const Loop2& b, int clear) {
+  const auto box = [](const Loop2& loop) {
+    std::array<Point2, 2> ends{loop[0], loop[0]};
+    for (const Point2& p : loop) ends = {glm::min(ends[0], p), glm::max(ends[1], p)};
+    return ends;
+  };
+  const auto [a_low, a_high] = box(a);
+  const auto [b_low, b_high] = box(b);
+  return a_low.x - clear < b_high.x && b_low.x - clear < a_high.x && a_low.y - clear < b_high.y &&
+         b_low.y - clear < a_high.y;
 }
 
 bool inside(const Loop2& convex, const Point2& p) {
@@ -240,6 +254,8 @@ bool add_dormer(House& house, Slope& slope, int u, int v) {
                           corner(half + clear, ridge + clear)}) {
     if (!inside(slope.outline, p)) return false;
   }
+  if (std::any_of(slope.holes.begin(), slope.holes.end(), [&](const Loop2& h) { return near(h, cut, clear); }))
+    return false;
   const FeatureId feature =
       house.feature("dormer_" + std::to_string(house.mesh->features.size()), "BuildingInstallation", house.building);
   const Look wall{house.palette.plaster, feature};

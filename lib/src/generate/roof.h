@@ -2,6 +2,7 @@
 // Roofs that close a house's body, with dormers and chimneys cut into them.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "generate/facade.h"
@@ -49,7 +50,8 @@ struct RoofShape {
 // A steep pyramid with flared eaves on a square plan.
 [[nodiscard]] RoofShape add_spire(House& house, const Footprint& plan, int eave_z);
 
-// Cuts a dormer with its front at v, centred on u; false (nothing done) if it does not fit below the ridge.
+// Cuts a dormer with its front at v, centred on u; false (nothing done) if it does not fit below the ridge
+// and beside what has been cut already.
 bool add_dormer(House& house, Slope& slope, int u, int v);
 // Cuts a chimney, u and v its middle; returns its top's middle. Precondition: it fits on the slope.
 Point add_chimney(House& house, Slope& slope, int u, int v, int top_z);
