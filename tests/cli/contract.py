@@ -270,6 +270,16 @@ class Failures(Contract):
         self.assertIn("a.lode", self.fails(2, "verify", self.scratch / "a.lode"))
         self.fails(2, "inspect", self.scratch)
 
+    def test_models_that_are_broken_on_purpose_are_read_or_refused(self):
+        folder = Path("/usr/share/assimp/models/invalid")
+        if not folder.is_dir():
+            self.skipTest("needs Debian's assimp-testmodels")
+        for model in sorted(folder.iterdir()):
+            done = run("inspect", model, "--quiet")
+            self.assertIn(done.returncode, (0, 2), model)
+            if done.returncode == 2:
+                self.assertRegex(done.stderr, rf"\Alodestone: {re.escape(str(model))}[^\n]*\n\Z")
+
     def test_errors_are_in_the_json_too(self):
         found = self.json("inspect", self.scratch / "missing.obj", code=2)
         self.assertEqual(found["error"]["code"], "not_found")
