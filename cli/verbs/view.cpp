@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The window is a program of its own, because the headless renderer in this one brings another OpenGL along.
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 
 #include "verbs.h"
 
@@ -35,25 +37,49 @@ std::filesystem::path find_viewer() {
   return "lodestone-view";
 }
 
+struct Ended {
+  int status = 0;
+  std::string last_words;  // last line on stderr
+};
+
+// Runs a program to its end; none if it cannot be started.
+std::optional<Ended> run_to_end(std::string program, std::string argument) {
+  char* words[] = {program.data(), argument.data(), nullptr};
+  int channel[2];
+  if (::pipe2(channel, O_CLOEXEC) != 0) return std::nullopt;
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, channel[1], STDERR_FILENO);
+  pid_t child = 0;
+  const int fault = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, words, environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  ::close(channel[1]);
+  std::FILE* said = ::fdopen(channel[0], "r");
+  Ended ended;
+  char line[1024];
+  while (fault == 0 && std::fgets(line, sizeof line, said) != nullptr) ended.last_words = line;
+  std::fclose(said);
+  if (fault != 0) return std::nullopt;
+  while (::waitpid(child, &ended.status, 0) < 0 && errno == EINTR) {
+  }
+  return ended;
+}
+
 Status View::run(Session& session) {
   std::error_code fault;
   if (!std::filesystem::exists(file_, fault)) {
     return Error{ErrorCode::NotFound, "there is no such file", file_.string()};
   }
-  std::string program = find_viewer().string();
-  std::string file = file_.string();
-  char* words[] = {program.data(), file.data(), nullptr};
-  pid_t child = 0;
-  int ended = 0;
-  if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, words, environ) != 0) {
-    return Error{ErrorCode::NotFound, "the viewer could not be started, install lodestone-view beside lodestone",
-                 program};
+  const std::string program = find_viewer().string();
+  const auto ended = run_to_end(program, file_.string());
+  if (!ended) {
+    return Error{ErrorCode::NotFound, "cannot be started, install lodestone-view beside lodestone", program};
   }
-  while (::waitpid(child, &ended, 0) < 0 && errno == EINTR) {
-  }
-  if (session.context().cancelled()) return Error{ErrorCode::Cancelled, "cancelled", file};
-  if (ended != 0) return Error{ErrorCode::BadData, "the viewer could not show it, see its message above", file};
-  return Done{};
+  if (session.context().cancelled()) return Error{ErrorCode::Cancelled, "cancelled", file_.string()};
+  if (ended->status == 0) return Done{};
+  std::string message = ended->last_words.substr(0, ended->last_words.find('\n'));
+  if (message.empty()) message = "the window ended without a word, status " + std::to_string(ended->status);
+  return Error{ErrorCode::BadData, message, ""};
 }
 
 }  // namespace

@@ -302,6 +302,10 @@ class Failures(Contract):
         self.fails(2, "convert", self.house, "-o", "/proc/a.ply")
         self.assertIn(".xyz", self.fails(1, "convert", self.house, "-o", self.scratch / "a.xyz"))
 
+    def test_a_window_without_a_display_is_one_line(self):
+        bare = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        self.assertIn("display", self.fails(2, "view", self.model, env=bare).lower())
+
     def test_a_full_disk_leaves_the_old_file(self):
         def small_files_only():
             resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
