@@ -85,9 +85,8 @@ class Recorder {
         log_(std::move(log)),
         indices_(source.indices),
         vertex_slot_(source.vertex_count(), none),
-        face_slot_(source.triangle_count(), none),
-        face_removed_(source.triangle_count(), 0),
-        rotation_(source.triangle_count(), 0) {
+        first_corner_(source.triangle_count(), none),
+        rotation_(source.triangle_count(), in_use) {
     if (!log_.moved_.empty()) values_ = source.vertices;
   }
 
@@ -95,7 +94,10 @@ class Recorder {
     static_cast<Surroundings&>(data_) = source_;
     data_.method = std::move(method);
     assign_vertex_slots();
-    for (std::uint32_t i = 0; i < log_.record_count(); ++i) encode(i);
+    for (std::uint32_t i = 0; i < log_.record_count(); ++i) {
+      if (i + fetch_ahead < log_.record_count()) fetch(spans(i + fetch_ahead));
+      encode(i);
+    }
     std::reverse(data_.shapes.begin(), data_.shapes.end());
     std::reverse(fan_corners_.begin(), fan_corners_.end());
     std::reverse(data_.edits.begin(), data_.edits.end());
@@ -104,6 +106,7 @@ class Recorder {
     translate_corners();
     write_vertices();
     std::vector<float> errors;
+    errors.reserve(log_.record_count());
     for (const auto& record : log_.records_) errors.push_back(record.error_m);
     data_.errors = error_steps(errors);
     return std::move(data_);
@@ -152,6 +155,11 @@ class Recorder {
   // Gives slots to the vertices of one record and sorts its span by them. A cycle of targets is cut: its last one
   // merges into itself.
   void order_removed(std::span<EditLog::RemovedVertex> removed, std::vector<std::uint32_t>& place) {
+    if (removed.size() == 1) {
+      if (removed[0].merges_into == none) removed[0].merges_into = removed[0].vertex;
+      give_slot(removed[0].vertex);
+      return;
+    }
     for (std::uint32_t i = 0; i < removed.size(); ++i) {
       place[removed[i].vertex] = i;
       if (removed[i].merges_into == none) removed[i].merges_into = removed[i].vertex;
@@ -171,18 +179,28 @@ class Recorder {
       }
       for (; !chain.empty(); chain.pop_back()) give_slot(removed[chain.back()].vertex);
     }
-    if (removed.size() > 1) {
-      std::sort(removed.begin(), removed.end(),
-                [&](const auto& a, const auto& b) { return vertex_slot_[a.vertex] < vertex_slot_[b.vertex]; });
-    }
+    std::sort(removed.begin(), removed.end(),
+              [&](const auto& a, const auto& b) { return vertex_slot_[a.vertex] < vertex_slot_[b.vertex]; });
     for (const auto& r : removed) place[r.vertex] = none;
+  }
+
+  // Brings near what encode() reads at random: most of its time is waiting for these.
+  void fetch(const Spans& record) const {
+    for (const FaceId face : record.faces) {
+      __builtin_prefetch(&indices_[3 * static_cast<std::size_t>(face)]);
+      __builtin_prefetch(&rotation_[face], 1);
+    }
+    for (const auto& [corner, to] : record.corners) {
+      __builtin_prefetch(&indices_[corner], 1);
+      __builtin_prefetch(&rotation_[corner / 3]);
+    }
   }
 
   void encode(std::uint32_t i) {
     const Spans record = spans(i);
     for (const FaceId face : record.faces) {
-      assert(face_removed_[face] == 0);
-      face_removed_[face] = 1;
+      assert(rotation_[face] == in_use);
+      rotation_[face] = 0;
     }
     gather_corners(record);
     gather_moves(record);
@@ -199,7 +217,7 @@ class Recorder {
   void gather_corners(const Spans& record) {
     corners_.clear();
     for (const auto& repointed : record.corners) {
-      if (face_removed_[repointed.corner / 3] == 0) corners_.push_back(repointed);
+      if (rotation_[repointed.corner / 3] == in_use) corners_.push_back(repointed);
     }
     sort_by(corners_, [](const auto& repointed) { return repointed.corner; });
     std::size_t kept = 0;
@@ -335,7 +353,7 @@ class Recorder {
       block.insert(block.end(), {m, 0});
       const std::size_t count = block.size() - 1;
       for (; i < record.faces.size() && material(record.faces[i]) == m; ++i, ++block[count]) {
-        rotation_[record.faces[i]] = 0;
+        rotation_[record.faces[i]] = 0;  // a fan may have been tried
         for (std::size_t c = 0; c < 3; ++c) block.push_back(vertex_slot_[indices_[3 * record.faces[i] + c]]);
       }
     }
@@ -370,13 +388,16 @@ class Recorder {
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
       const MaterialId m = source_.face_material(f);
       ++data_.face_begin[m + 1];
-      if (face_removed_[f] == 0) ++data_.base_face_counts[m];
+      if (rotation_[f] == in_use) ++data_.base_face_counts[m];
     }
     for (std::size_t m = 0; m < materials; ++m) data_.face_begin[m + 1] += data_.face_begin[m];
     std::vector<FaceId> next(data_.face_begin.begin(), data_.face_begin.end() - 1);
-    const auto give = [&](FaceId f) { face_slot_[f] = next[source_.face_material(f)]++; };
+    const auto give = [&](FaceId f) {
+      const std::uint32_t rotation = rotation_[f] == in_use ? 0 : rotation_[f];
+      first_corner_[f] = 3 * next[source_.face_material(f)]++ + rotation;
+    };
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
-      if (face_removed_[f] == 0) give(f);
+      if (rotation_[f] == in_use) give(f);
     }
     for (std::uint32_t i = log_.record_count(); i-- > 0;) {
       for (const FaceId f : spans(i).faces) give(f);
@@ -385,7 +406,7 @@ class Recorder {
     if (!source_.face_features.empty()) {
       data_.face_features.resize(source_.triangle_count());
       for (FaceId f = 0; f < source_.triangle_count(); ++f) {
-        data_.face_features[face_slot_[f]] = source_.face_features[f];
+        data_.face_features[first_corner_[f] / 3] = source_.face_features[f];
       }
     }
   }
@@ -399,15 +420,16 @@ class Recorder {
     }
     data_.base_indices.resize(total);
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
-      if (face_removed_[f] != 0) continue;
+      if (rotation_[f] != in_use) continue;
       std::uint64_t& at = place[source_.face_material(f)];
       for (std::size_t c = 0; c < 3; ++c) data_.base_indices[at++] = vertex_slot_[indices_[3 * f + c]];
     }
   }
 
   [[nodiscard]] CornerId slot_corner(CornerId corner) const {
-    const FaceId face = corner / 3;
-    return 3 * face_slot_[face] + (corner % 3 + 3U - rotation_[face]) % 3;
+    const CornerId first = first_corner_[corner / 3];
+    const std::uint32_t rotation = first % 3;
+    return first - rotation + (corner % 3 + 3 - rotation) % 3;
   }
 
   void translate_corners() {
@@ -415,8 +437,11 @@ class Recorder {
     data_.corner_bytes = source_.indices.size() <= three_byte_corners ? 3 : 4;
     data_.fan_corners.resize(data_.corner_bytes * fan_corners_.size());
     std::uint8_t* out = data_.fan_corners.data();
-    for (const CornerId corner : fan_corners_) {
-      const CornerId slot = slot_corner(corner);
+    constexpr std::size_t corners_ahead = 4 * fetch_ahead;
+    for (std::size_t i = 0; i < fan_corners_.size(); ++i) {
+      if (i + corners_ahead < fan_corners_.size())
+        __builtin_prefetch(&first_corner_[fan_corners_[i + corners_ahead] / 3]);
+      const CornerId slot = slot_corner(fan_corners_[i]);
       std::memcpy(out, &slot, data_.corner_bytes);
       out += data_.corner_bytes;
     }
@@ -444,7 +469,9 @@ class Recorder {
   }
 
   static constexpr std::size_t max_value_words = 9;
-  static constexpr VertexId pending = none - 1;  // slot of a vertex whose target is looked up
+  static constexpr std::uint8_t in_use = 3;        // rotation of a face that no record removed yet
+  static constexpr std::uint32_t fetch_ahead = 8;  // records
+  static constexpr VertexId pending = none - 1;    // slot of a vertex whose target is looked up
 
   const Mesh& source_;
   EditLog log_;
@@ -453,10 +480,9 @@ class Recorder {
   VertexArrays values_;                   // likewise; empty if nothing moves
   std::vector<VertexId> vertex_slot_;     // of each source vertex
   std::vector<VertexId> vertex_of_slot_;  // its inverse
-  std::vector<FaceId> face_slot_;
-  std::vector<std::uint8_t> face_removed_;
-  std::vector<std::uint8_t> rotation_;  // corner of the source face that is corner 0 of its slot
-  std::vector<CornerId> fan_corners_;   // source corners, last record first until reversed
+  std::vector<CornerId> first_corner_;    // of each source face: 3 times its slot, plus its rotation
+  std::vector<std::uint8_t> rotation_;    // corner of the source face that is corner 0 of its slot, or in_use
+  std::vector<CornerId> fan_corners_;     // source corners, last record first until reversed
   std::vector<EditLog::Repointed> corners_;
   std::vector<std::uint32_t> moves_;
   std::vector<std::uint32_t> scratch_;
