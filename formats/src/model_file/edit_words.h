@@ -2,6 +2,7 @@
 // Views of the packed arrays of a ModelData; see progressive_model.h and docs/FILE_FORMAT.md for their layout.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -17,14 +18,13 @@ namespace lodestone::model_file {
   return data.corner_bytes == 3 ? low : low | static_cast<std::uint32_t>(from[3]) << 24;
 }
 inline void store_corners(ModelData& data, std::span<const CornerId> corners) {
-  std::size_t at = data.fan_corners.size();
-  data.fan_corners.resize(at + corners.size() * data.corner_bytes);
+  std::array<std::uint8_t, 4 * std::size_t{RecordShape::corner_mask}> bytes;
+  std::uint8_t* to = bytes.data();
   for (const CornerId corner : corners) {
-    std::uint8_t* to = &data.fan_corners[at];
-    for (std::uint32_t b = 0; b < 3; ++b) to[b] = static_cast<std::uint8_t>(corner >> (8 * b));
-    if (data.corner_bytes == 4) to[3] = static_cast<std::uint8_t>(corner >> 24);
-    at += data.corner_bytes;
+    for (std::uint32_t b = 0; b < 3; ++b) *to++ = static_cast<std::uint8_t>(corner >> (8 * b));
+    if (data.corner_bytes == 4) *to++ = static_cast<std::uint8_t>(corner >> 24);
   }
+  data.fan_corners.insert(data.fan_corners.end(), bytes.data(), to);
 }
 
 [[nodiscard]] inline RecordKind kind_of(std::uint8_t shape) noexcept {

@@ -90,22 +90,25 @@ class Replay {
     Guess guess = guess_like(ring[0]);
     const glm::dvec3 start = guess.position;
     glm::dvec3 before{0.0};
-    for (std::size_t i = 1; i < ring.size(); ++i) {
-      const glm::dvec3 p = position(ring[i]);
+    for (const VertexId v : ring.subspan(1)) {
+      const glm::dvec3 p = position(v);
       guess.position += p;
       guess.across += glm::cross(before, p - start);
       before = p - start;
-      const std::uint32_t* w = value(ring[i]);
-      if (layout_.normal_words == 3) {
-        for (int c = 0; c < 3; ++c) guess.normal[c] += Space::number(w[3 + c]);
-      }
-      if (layout_.uvs) {
-        guess.uv += glm::dvec2{Space::number(w[layout_.uv()]), Space::number(w[layout_.uv() + 1])};
-      }
     }
     const auto count = static_cast<double>(ring.size());
     guess.position /= count;
-    guess.uv /= count;
+    if (layout_.normal_words == 3) {
+      for (const VertexId v : ring.subspan(1)) {
+        for (int c = 0; c < 3; ++c) guess.normal[c] += Space::number(value(v)[3 + c]);
+      }
+    }
+    if (layout_.uvs) {
+      for (const VertexId v : ring.subspan(1)) {
+        guess.uv += glm::dvec2{Space::number(value(v)[layout_.uv()]), Space::number(value(v)[layout_.uv() + 1])};
+      }
+      guess.uv /= count;
+    }
     return guess;
   }
 

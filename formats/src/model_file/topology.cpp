@@ -40,7 +40,7 @@ void Topology::link_long(VertexId vertex, CornerId corner) {
     place[1] = 2 * count;
   }
   if (count < max_star) pool_[place[0] + count] = corner;
-  counts_[vertex] = static_cast<std::uint8_t>(count + 1);
+  counts_[vertex] = static_cast<std::uint16_t>(count + 1);
 }
 
 void Topology::shorten(VertexId vertex, std::uint32_t count) {
@@ -49,7 +49,7 @@ void Topology::shorten(VertexId vertex, std::uint32_t count) {
     std::copy_n(&pool_[place[0]], count, stars_[vertex].data());
     give_back(place);
   }
-  counts_[vertex] = static_cast<std::uint8_t>(count);
+  counts_[vertex] = static_cast<std::uint16_t>(count);
 }
 
 void Topology::unlink(VertexId vertex, CornerId corner) {
@@ -63,16 +63,11 @@ void Topology::repoint(CornerId corner, VertexId to) {
   link(to, corner);
 }
 
-bool Topology::split_star(VertexId from, std::span<const CornerId> run, VertexId to) {
-  for (const CornerId corner : run) {
-    if (vertices_[corner] != from) return false;
-    link(to, corner);
-  }
-  if (!listed(from)) return true;
+// Takes the corners that now belong to others off a long list.
+void Topology::drop_moved(VertexId from) {
   CornerId* first = list(from);
   const auto moved = [&](CornerId corner) { return vertices_[corner] != from; };
   shorten(from, static_cast<std::uint32_t>(std::remove_if(first, first + counts_[from], moved) - first));
-  return true;
 }
 
 }  // namespace lodestone::model_file

@@ -78,7 +78,25 @@ class Topology {
 
   // What a fan does: moves `run`, some of the corners of `from`, to the vertex `to`, which has no corners yet, in that
   // order. False, with the lists spoilt, if a corner of `run` does not belong to `from` or occurs twice.
-  [[nodiscard]] bool split_star(VertexId from, std::span<const CornerId> run, VertexId to);
+  [[nodiscard]] bool split_star(VertexId from, std::span<const CornerId> run, VertexId to) {
+    for (const CornerId corner : run) {
+      if (vertices_[corner] != from) return false;
+      link(to, corner);
+    }
+    if (counts_[from] > inline_corners) {
+      if (listed(from)) drop_moved(from);
+      return true;
+    }
+    CornerId* const first = stars_[from].data();
+    CornerId* last = first;
+    for (std::uint32_t i = 0; i < counts_[from]; ++i) {
+      const CornerId corner = first[i];
+      *last = corner;
+      last += vertices_[corner] == from ? 1 : 0;
+    }
+    counts_[from] = static_cast<std::uint16_t>(last - first);
+    return true;
+  }
 
  private:
   static constexpr std::uint32_t inline_corners = 8;
@@ -101,6 +119,7 @@ class Topology {
   }
   void link_long(VertexId vertex, CornerId corner);
   void unlink(VertexId vertex, CornerId corner);
+  void drop_moved(VertexId from);
   std::uint32_t take(std::uint32_t room);
   void give_back(const Inline& place);
   // Sets the length of a list to one that is not longer.
@@ -110,7 +129,8 @@ class Topology {
   std::vector<VertexId> vertices_;  // per corner
   std::uint32_t vertex_count_ = 0;
   std::vector<Inline> stars_;  // per vertex
-  std::vector<std::uint8_t> counts_;
+  std::vector<std::uint16_t>
+      counts_;  // wider than need be: bytes would alias everything the compiler keeps in registers
   std::vector<CornerId> pool_;
   std::array<std::vector<std::uint32_t>, 5> free_;  // places in the pool with room for 16, 32, ... 256
 };
