@@ -109,7 +109,7 @@ class ModelReader {
     }
     if (!split_columns(block->raw, block->columns)) return bad(name_of(i) + " has no valid table of columns");
     auto summary = read_summary(block->columns);
-    if (!summary) return bad(name_of(i) + " has no valid summary");
+    if (!summary || block->count != block->columns[Kind].left()) return bad(name_of(i) + " has no valid summary");
     block->summary = *std::move(summary);
     blocks_.push_back(std::move(block));
     return std::nullopt;
@@ -136,10 +136,21 @@ class ModelReader {
 
   Fault decode() {
     if (auto fault = lay_out_faces()) return fault;
-    StackReader stack{
-        data_,
-        header_.grid,
-        {.normals = header_.normals, .uvs = header_.uvs, .colors = header_.colors, .features = header_.features}};
+    std::uint64_t vertices = 0;
+    std::uint64_t records = 0;
+    for (const auto& block : blocks_) {
+      vertices += block->summary.vertices;
+      records += block->count;
+    }
+    if (vertices >= none || records >= none) return bad("there are too many vertices");
+    StackReader stack{data_,
+                      header_.grid,
+                      {.normals = header_.normals,
+                       .uvs = header_.uvs,
+                       .colors = header_.colors,
+                       .features = header_.features,
+                       .vertices = static_cast<std::uint32_t>(vertices),
+                       .records = static_cast<std::uint32_t>(records)}};
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       if (context_.cancelled()) return bad("reading was cancelled", ErrorCode::Cancelled);
       context_.report("decode", static_cast<double>(i) / static_cast<double>(blocks_.size()));

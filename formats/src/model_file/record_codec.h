@@ -19,9 +19,14 @@ class RecordCodec : protected Replay<Space, Io> {
   RecordCodec(const ModelData& data, const ValueLayout& layout, Store store)
       : Base(data, layout), store_(std::move(store)) {}
 
+  // Sees to it that room for so many vertices is taken once.
+  void reserve(std::uint32_t vertices) {
+    Base::reserve(vertices);
+    store_.reserve(vertices);
+  }
   // Makes room for the vertices of a block.
   void open_block(std::uint32_t vertices) {
-    Base::reserve_vertices(topology_.vertex_count() + vertices);
+    Base::make_room(topology_.vertex_count() + vertices);
     store_.open_block(vertices);
   }
   // Whether the block had just as many.

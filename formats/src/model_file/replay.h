@@ -59,9 +59,13 @@ class Replay {
   [[nodiscard]] std::uint32_t* value(VertexId v) noexcept { return &values_[std::size_t{v} * stride_]; }
 
   // Makes room for so many vertices in all.
-  void reserve_vertices(std::uint32_t count) {
+  void make_room(std::uint32_t count) {
     values_.resize(std::size_t{count} * stride_);
-    topology_.reserve_vertices(count);
+    topology_.make_room(count);
+  }
+  void reserve(std::uint32_t count) {
+    values_.reserve(std::size_t{count} * stride_);
+    topology_.reserve(count);
   }
 
   [[nodiscard]] glm::dvec3 position(VertexId v) const noexcept {

@@ -131,8 +131,11 @@ class Writer final : public StackWriter::Implementation {
 template <class Space>
 class Reader final : public StackReader::Implementation {
  public:
-  Reader(ModelData& data, const Grid& grid, const ValueLayout& layout, bool features)
-      : data_(data), grid_(grid), codec_(data, layout, ReadStore<Space>{data, grid_, layout, features}) {}
+  Reader(ModelData& data, const Grid& grid, const ValueLayout& layout, const StackReader::Contents& contents)
+      : data_(data), grid_(grid), codec_(data, layout, ReadStore<Space>{data, grid_, layout, contents.features}) {
+    codec_.reserve(contents.vertices);
+    data.shapes.reserve(contents.records);
+  }
 
   std::string base(const BlockSummary& summary, ReadColumns& columns) override {
     ColumnSource io{&columns};
@@ -142,7 +145,6 @@ class Reader final : public StackReader::Implementation {
       data_.base_face_counts[material] = count;
       faces += count;
     }
-    if (summary.vertices > columns[NewValues].left()) return "the base has too few values";
     if (3 * faces > columns[Split].left()) return "the base has too few indices";
     codec_.open_block(summary.vertices);
     data_.base_vertex_count = summary.vertices;
@@ -153,7 +155,6 @@ class Reader final : public StackReader::Implementation {
 
   std::string records(std::uint32_t count, const BlockSummary& summary, ReadColumns& columns) override {
     ColumnSource io{&columns};
-    if (summary.vertices > columns[NewValues].left() + columns[EditMerge].left()) return "a block has too few values";
     codec_.open_block(summary.vertices);
     if (count != columns[Kind].left()) return "a block has another number of records than it should";
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -222,15 +223,15 @@ StackWriter::~StackWriter() = default;
 void StackWriter::base(WrittenColumns& columns) { implementation_->base(columns); }
 void StackWriter::records(std::uint32_t count, WrittenColumns& columns) { implementation_->records(count, columns); }
 
-StackReader::StackReader(ModelData& data, const Grid& grid, const Attributes& attributes) {
-  ValueLayout layout{.normals = attributes.normals, .uvs = attributes.uvs, .colors = attributes.colors};
-  layout.normal_words = attributes.normals ? (grid.bits == 0 ? 3 : 2) : 0;
+StackReader::StackReader(ModelData& data, const Grid& grid, const Contents& contents) {
+  ValueLayout layout{.normals = contents.normals, .uvs = contents.uvs, .colors = contents.colors};
+  layout.normal_words = contents.normals ? (grid.bits == 0 ? 3 : 2) : 0;
   constexpr std::uint64_t three_byte_corners = 1ULL << 24U;
   data.corner_bytes = 3ULL * data.face_begin.back() <= three_byte_corners ? 3 : 4;
   if (grid.bits == 0) {
-    implementation_ = std::make_unique<Reader<FloatSpace>>(data, grid, layout, attributes.features);
+    implementation_ = std::make_unique<Reader<FloatSpace>>(data, grid, layout, contents);
   } else {
-    implementation_ = std::make_unique<Reader<GridSpace>>(data, grid, layout, attributes.features);
+    implementation_ = std::make_unique<Reader<GridSpace>>(data, grid, layout, contents);
   }
 }
 StackReader::~StackReader() = default;
@@ -247,7 +248,10 @@ std::optional<BlockSummary> read_summary(ReadColumns& columns) {
   summary.vertices = column.get();
   summary.error_steps = column.get();
   const std::uint32_t materials = column.get();
-  if (column.left() != 2ULL * materials || summary.error_steps > columns[ErrorLevel].left()) return std::nullopt;
+  if (column.left() != 2ULL * materials || summary.error_steps > columns[ErrorLevel].left() ||
+      summary.vertices > columns[NewValues].left() + columns[EditMerge].left()) {
+    return std::nullopt;
+  }
   // A face takes a token at least half its own: two in a fan, three in an edit or the base.
   const std::uint64_t most = 2 * columns[Kind].left() + columns[EditFace].left() + columns[Split].left();
   std::uint64_t faces = 0;

@@ -83,14 +83,15 @@ struct BlockSummary {
 // Takes the summary from the front of the block's columns; empty if it is not one.
 [[nodiscard]] std::optional<BlockSummary> read_summary(ReadColumns& columns);
 
-// Appends to `data` what blocks hold. Before: `data.vertices` empty but for what `attributes` tells, face_begin whole
+// Appends to `data` what blocks hold. Before: `data.vertices` empty but for what `contents` tells, face_begin whole
 // (the faces of all blocks to come). A returned string says what is wrong; empty if nothing is.
 class StackReader {
  public:
-  struct Attributes {
+  struct Contents {
     bool normals = false, uvs = false, colors = false, features = false;
+    std::uint32_t vertices = 0, records = 0;  // of all blocks to come; only to make room once
   };
-  StackReader(ModelData& data, const Grid& grid, const Attributes& attributes);
+  StackReader(ModelData& data, const Grid& grid, const Contents& contents);
   ~StackReader();
   StackReader(const StackReader&) = delete;
   StackReader& operator=(const StackReader&) = delete;

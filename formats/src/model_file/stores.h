@@ -68,6 +68,12 @@ class ReadStore {
     features_ = features;
   }
 
+  void reserve(std::uint32_t vertices) {
+    data_.vertices.positions.reserve(vertices);
+    if (floats_.normals) data_.vertices.normals.reserve(vertices);
+    if (floats_.uvs) data_.vertices.uvs.reserve(vertices);
+    if (floats_.colors) data_.vertices.colors.reserve(vertices);
+  }
   void open_block(std::uint32_t vertices) {
     const std::size_t count = data_.vertices.size() + std::size_t{vertices};
     data_.vertices.positions.resize(count);

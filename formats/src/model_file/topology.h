@@ -49,8 +49,12 @@ class Topology {
   // The slot the next face of this material takes.
   [[nodiscard]] FaceId next_face(MaterialId m) const noexcept { return next_face_[m]; }
 
-  // Makes room for so many vertices in all.
-  void reserve_vertices(std::uint32_t count) {
+  // Makes room for so many vertices in all; reserve() only sees to it that this is cheap.
+  void reserve(std::uint32_t count) {
+    stars_.reserve(count);
+    counts_.reserve(count);
+  }
+  void make_room(std::uint32_t count) {
     stars_.resize(count);
     counts_.resize(count, 0);
   }
