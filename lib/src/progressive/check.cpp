@@ -87,8 +87,9 @@ bool finite_array(const std::vector<Vector>& array) {
 
 Fault check_finite(const ModelData& data) {
   const VertexArrays& v = data.vertices;
-  const bool finite = finite_array(v.positions) && finite_array(v.normals) && finite_array(v.uvs);
-  return finite ? fine : "a vertex value is not finite";
+  if (!finite_array(v.positions)) return "a position is not finite";
+  if (!finite_array(v.normals)) return "a normal is not finite";
+  return finite_array(v.uvs) ? fine : "a uv is not finite";
 }
 
 bool finite_value(const VertexPointers& vertices, VertexId slot) {
