@@ -7,6 +7,7 @@
 
 #include <lodestone/progressive_model.h>
 
+#include "base/hash.h"
 #include "progressive/values.h"
 
 namespace lodestone {
@@ -73,11 +74,8 @@ class Triangles {
   }
 
   [[nodiscard]] std::uint64_t hash(FaceId face) const {
-    std::uint64_t h = 0x9E3779B97F4A7C15ULL;
-    for (const std::uint32_t word : key(face)) {
-      h = (h ^ word) * 0xFF51AFD7ED558CCDULL;
-      h ^= h >> 32U;
-    }
+    std::uint64_t h = 0;
+    for (const std::uint32_t word : key(face)) h = hash_combine(h, word);
     return h;
   }
 

@@ -6,6 +6,7 @@
 #include <lodestone/cursor.h>
 #include <lodestone/progressive_model.h>
 
+#include "base/hash.h"
 #include "progressive/stack.h"
 
 namespace lodestone {
@@ -14,10 +15,10 @@ namespace {
 // Levels at which the whole state is looked at; all records are played between them.
 constexpr std::uint32_t stops = 48;
 
-// 64-bit FNV-1a over 32-bit words: tells apart states, not adversaries.
+// Over 32-bit words: tells apart states, not adversaries.
 class Hash {
  public:
-  void add(std::uint32_t word) noexcept { value_ = (value_ ^ word) * 0x100000001B3ULL; }
+  void add(std::uint32_t word) noexcept { value_ = hash_combine(value_, word); }
   template <class T>
   void add_all(std::span<const T> array, std::size_t count) noexcept {
     const auto* words = reinterpret_cast<const unsigned char*>(array.data());
@@ -29,7 +30,7 @@ class Hash {
   [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
 
  private:
-  std::uint64_t value_ = 0xCBF29CE484222325ULL;
+  std::uint64_t value_ = 0;
 };
 
 std::uint64_t hash_in_use(const Cursor& cursor) {
