@@ -36,4 +36,17 @@ void radix_sort(std::vector<T>& items) {
   }
 }
 
+// By the upper 12 bits of the key only, which for a non-negative float are its exponent and 3 bits of mantissa: steps
+// of an eighth. Equal ones keep their order. O(n).
+template <class T>
+void coarse_sort(std::vector<T>& items) {
+  constexpr std::uint32_t shift = 20;
+  std::vector<std::uint32_t> at((std::size_t{1} << (32 - shift)) + 1, 0);
+  for (const T& item : items) ++at[(item.key >> shift) + 1];
+  for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
+  std::vector<T> other(items.size());
+  for (const T& item : items) other[at[item.key >> shift]++] = item;
+  items.swap(other);
+}
+
 }  // namespace lodestone

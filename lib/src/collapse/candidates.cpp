@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "base/parallel.h"
+#include "collapse/wedges.h"
 #include "collapse/weights.h"
 
 namespace lodestone::collapse {
@@ -25,7 +27,8 @@ struct Around {
 };
 
 // Edges that do not have one face on either side: adds their lines and tells what kind of point this is.
-std::uint8_t add_lines(const WorkingMesh& mesh, const Around& around, const glm::dvec3& at, Symmetric3& quadric) {
+std::uint8_t add_borders(const WorkingMesh& mesh, const Around& around, const glm::dvec3& at, double weight,
+                         Symmetric3& quadric) {
   std::uint32_t border = 0;
   bool complex = false;
   const auto count = [](const std::vector<std::uint32_t>& list, std::uint32_t p) {
@@ -41,7 +44,7 @@ std::uint8_t add_lines(const WorkingMesh& mesh, const Around& around, const glm:
       complex = true;
     }
     const glm::dvec3 d = glm::dvec3{mesh.position[p]} - at;
-    quadric.add_line(d, line_weight * glm::dot(d, d));
+    quadric.add_line(d, weight * glm::dot(d, d));
   };
   for (std::size_t i = 0; i < around.next.size(); ++i) {
     const auto seen = around.next.begin() + static_cast<std::ptrdiff_t>(i);
@@ -55,13 +58,45 @@ std::uint8_t add_lines(const WorkingMesh& mesh, const Around& around, const glm:
   return border == 0 ? 0 : point_border;
 }
 
-bool closed_ring(const Around& around) {
+// Seams, material borders and sharp edges at a point: adds their lines and tells what they make of it.
+std::uint8_t add_inner_lines(const WorkingMesh& mesh, const LineRules& rules, std::uint32_t point, double sharp_cosine,
+                             const Around& around, Symmetric3& quadric) {
+  const glm::dvec3 at{mesh.position[point]};
+  const std::uint32_t* corners = mesh.corners.data() + mesh.first[point];
+  const auto offset = [&](std::uint32_t q) { return glm::dvec3{mesh.position[q]} - at; };
+  const auto normal = [&](std::size_t i) { return glm::cross(offset(around.next[i]), offset(around.previous[i])); };
+  std::uint8_t flags = 0;
+  std::uint32_t sharp = 0;
   for (std::size_t i = 0; i < around.next.size(); ++i) {
+    const std::uint32_t q = around.next[i];
+    const auto twin = std::find(around.previous.begin(), around.previous.end(), q);
+    if (twin == around.previous.end()) continue;
+    const auto j = static_cast<std::size_t>(twin - around.previous.begin());
+    const glm::dvec3 a = normal(i);
+    const glm::dvec3 b = normal(j);
+    const bool is_sharp = glm::dot(a, b) < sharp_cosine * std::sqrt(glm::dot(a, a) * glm::dot(b, b));
+    const bool is_seam = rules.looks_matter && seam_between(mesh, rules.source, mesh.faces[corners[i] >> 2U],
+                                                            mesh.faces[corners[j] >> 2U], point, q);
+    sharp += is_sharp ? 1U : 0U;
+    if (is_seam) flags |= point_line;
+    if (is_seam || is_sharp) quadric.add_line(offset(q), rules.weight * glm::dot(offset(q), offset(q)));
+  }
+  if (sharp == 2) flags |= point_sharp;
+  if (sharp == 1 || sharp > 2) flags |= point_corner;
+  return flags;
+}
+
+// Whether each edge at the point has one face on either side: every neighbour comes next once and previous once.
+bool closed_ring(const Around& around) {
+  const std::size_t count = around.next.size();
+  const std::uint32_t* next = around.next.data();
+  const std::uint32_t* previous = around.previous.data();
+  for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t out = 0;
     std::uint32_t in = 0;
-    for (std::size_t j = 0; j < around.next.size(); ++j) {
-      out += around.next[j] == around.next[i] ? 1U : 0U;
-      in += around.previous[j] == around.next[i] ? 1U : 0U;
+    for (std::size_t j = 0; j < count; ++j) {
+      out += next[j] == next[i] ? 1U : 0U;
+      in += previous[j] == next[i] ? 1U : 0U;
     }
     if (out != 1 || in != 1) return false;
   }
@@ -126,27 +161,32 @@ void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics,
 
 }  // namespace
 
-std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const EdgeCollapseOptions& options, const Context& context) {
+std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, const Context& context) {
   std::vector<Symmetric3> quadrics(mesh.point_count());
+  const double sharp_cosine = std::cos(std::min(rules.options.sharp_edge_rad, std::numbers::pi));
+  const bool inner_lines = rules.looks_matter || sharp_cosine > -1.0;
   parallel_chunks(mesh.point_count(), point_chunk, context, [&](std::size_t begin, std::size_t end) {
     Around around;
-    for (std::size_t p = begin; p != end; ++p) {
-      around.next.clear();
-      around.previous.clear();
+    for (auto p = static_cast<std::uint32_t>(begin); p != end; ++p) {
+      const std::uint32_t degree = mesh.first[p + 1] - mesh.first[p];
+      around.next.resize(degree);
+      around.previous.resize(degree);
       Symmetric3 quadric;
       const glm::dvec3 at{mesh.position[p]};
-      for (std::uint32_t i = mesh.first[p]; i != mesh.first[p + 1]; ++i) {
-        const std::uint32_t k = mesh.corners[i] & 3U;
-        const Face& f = mesh.faces[mesh.corners[i] >> 2U];
+      const std::uint32_t* corners = mesh.corners.data() + mesh.first[p];
+      for (std::uint32_t i = 0; i != degree; ++i) {
+        const std::uint32_t k = corners[i] & 3U;
+        const Face& f = mesh.faces[corners[i] >> 2U];
         const std::uint32_t next = f.point[k == 2 ? 0 : k + 1];
         const std::uint32_t previous = f.point[k == 0 ? 2 : k - 1];
-        around.next.push_back(next);
-        around.previous.push_back(previous);
+        around.next[i] = next;
+        around.previous[i] = previous;
         quadric.add_plane(glm::cross(glm::dvec3{mesh.position[next]} - at, glm::dvec3{mesh.position[previous]} - at));
       }
       std::uint8_t flags = mesh.flags[p] & point_frozen;
-      if (!closed_ring(around)) flags |= add_lines(mesh, around, at, quadric);
-      if (options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
+      if (!closed_ring(around)) flags |= add_borders(mesh, around, at, rules.weight, quadric);
+      if (inner_lines) flags |= add_inner_lines(mesh, rules, p, sharp_cosine, around, quadric);
+      if (rules.options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
       mesh.flags[p] = flags;
       quadrics[p] = quadric;
     }

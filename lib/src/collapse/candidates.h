@@ -23,9 +23,16 @@ struct Candidates {
   std::size_t edge_count = 0;    // edges looked at
 };
 
-// Sums the quadric of every point over its faces and the borders there, and sets its flags border and complex.
-[[nodiscard]] std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const EdgeCollapseOptions& options,
-                                                   const Context& context);
+// How lines are found and weighed.
+struct LineRules {
+  const Mesh& source;
+  const EdgeCollapseOptions& options;
+  bool looks_matter = false;  // seams and material borders are lines
+  double weight = 1.0;
+};
+
+// Sums the quadric of every point over its faces and the lines there, and sets its flags.
+[[nodiscard]] std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, const Context& context);
 
 // The `share` (0..1) of edges with the least estimated cost.
 [[nodiscard]] Candidates find_candidates(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics,

@@ -10,7 +10,10 @@
 
 namespace lodestone::collapse {
 
-Refusal Collapser::attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key) {
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Refusal Collapser::attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key, double cost_limit) {
+  cost_limit_ = cost_limit;
   const WorkingMesh& mesh = state_.mesh;
   if (((mesh.flags[u] | mesh.flags[v]) & point_locked) != 0) return Refusal::Busy;
   if (!gather_star(mesh, u, v, region_, star_)) return Refusal::Outside;
@@ -26,11 +29,12 @@ Refusal Collapser::check_topology() {
   const WorkingMesh& mesh = state_.mesh;
   const std::uint8_t fu = mesh.flags[star_.u];
   const std::uint8_t fv = mesh.flags[star_.v];
-  if (((fu | fv) & point_complex) == 0) {
+  if (((fu | fv) & point_complex) == 0 && !state_.loose) {
     if ((fu & fv & point_border) != 0 && star_.shared != 1) return Refusal::Link;
     if (!link_holds()) return Refusal::Link;
   }
   if (((fu | fv) & (point_border | point_complex)) != 0 && !apexes_stay()) return Refusal::Border;
+  if (state_.loose) find_twins();
   if (!star_.plain) find_lines();
   return Refusal::None;
 }
@@ -83,43 +87,81 @@ bool Collapser::apexes_stay() const {
   return star_.faces.size() > star_.shared;
 }
 
-void Collapser::find_lines() {
-  const WorkingMesh& mesh = state_.mesh;
-  struct Spoke {
-    std::uint32_t from, to, faces;
-    glm::dvec3 direction;
-  };
-  std::vector<Spoke> spokes;
-  const auto count = [&](std::uint32_t from, std::uint32_t to, const glm::dvec3& direction) {
-    for (Spoke& s : spokes) {
-      if (s.from == from && s.to == to) {
-        ++s.faces;
-        return;
-      }
+// Where two sheets fold onto each other one of them is enough, unless it can be told which side is seen.
+void Collapser::find_twins() {
+  for (std::size_t i = 0; i < star_.faces.size(); ++i) {
+    StarFace& f = star_.faces[i];
+    if (f.side == Side::Both) continue;
+    const FaceId id = state_.mesh.faces[f.index].id;
+    for (std::size_t j = 0; j < i && !f.twin; ++j) {
+      const StarFace& other = star_.faces[j];
+      if (other.side == Side::Both || other.twin) continue;
+      const bool same = other.a == f.a && other.b == f.b;
+      if (!same && (other.a != f.b || other.b != f.a)) continue;
+      const MaterialId material = state_.source.face_material(id);
+      f.twin = material == state_.source.face_material(state_.mesh.faces[other.index].id) &&
+               (same || state_.source.materials[material].double_sided);
     }
-    spokes.push_back({from, to, 1, direction});
-  };
-  for (const StarFace& f : star_.faces) {
-    const std::uint32_t near = f.side == Side::V ? star_.v : star_.u;
-    const glm::dvec3 at = f.side == Side::V ? star_.e : glm::dvec3{0.0};
-    count(near, f.a, f.at_a - at);
-    count(near, f.b, f.at_b - at);
-    if (f.side != Side::Both) continue;
-    const bool a_is_v = f.a == star_.v;
-    count(star_.v, a_is_v ? f.b : f.a, (a_is_v ? f.at_b : f.at_a) - star_.e);
-  }
-  static_cast<void>(mesh);
-  for (const Spoke& s : spokes) {
-    if (s.faces != 2) star_.lines.push_back({s.from, s.to, s.direction});
   }
 }
 
-Refusal Collapser::choose_ends() {
+void Collapser::find_lines() {
+  spokes_.clear();
+  for (const StarFace& f : star_.faces) {
+    const std::uint32_t near = f.side == Side::V ? star_.v : star_.u;
+    const glm::dvec3 at = f.side == Side::V ? star_.e : glm::dvec3{0.0};
+    add_spoke(near, f.a, f.at_a - at, f);
+    add_spoke(near, f.b, f.at_b - at, f);
+    if (f.side != Side::Both) continue;
+    const bool a_is_v = f.a == star_.v;
+    add_spoke(star_.v, a_is_v ? f.b : f.a, (a_is_v ? f.at_b : f.at_a) - star_.e, f);
+  }
+  for (const Spoke& s : spokes_) {
+    const bool line = s.faces != 2 || (state_.looks_matter && looks_differ(s));
+    if (line) star_.lines.push_back({s.from, s.to, s.direction});
+  }
+}
+
+void Collapser::add_spoke(std::uint32_t from, std::uint32_t to, const glm::dvec3& direction, const StarFace& face) {
+  for (Spoke& s : spokes_) {
+    if (s.from != from || s.to != to) continue;
+    s.second = &face;
+    ++s.faces;
+    return;
+  }
+  spokes_.push_back({from, to, 1, direction, &face, nullptr});
+}
+
+bool Collapser::looks_differ(const Spoke& spoke) const {
   const WorkingMesh& mesh = state_.mesh;
-  u_may_go_ = (mesh.flags[star_.u] & point_frozen) == 0;
-  v_may_go_ = (mesh.flags[star_.v] & point_frozen) == 0;
-  if (!u_may_go_ && !v_may_go_) return Refusal::Frozen;
-  if (state_.options.attributes == Attributes::All && !state_.relaxed && state_.looks_matter) {
+  return seam_between(mesh, state_.source, mesh.faces[spoke.first->index], mesh.faces[spoke.second->index], spoke.from,
+                      spoke.to);
+}
+
+// Whether the two faces on the edge meet at more than the given angle.
+bool Collapser::edge_is_sharp() const {
+  glm::dvec3 unit[2] = {glm::dvec3{0.0}, glm::dvec3{0.0}};
+  int found = 0;
+  for (const StarFace& f : star_.faces) {
+    const double length = glm::length(f.normal);
+    if (f.side == Side::Both && found < 2 && length > 0.0) unit[found++] = f.normal / length;
+  }
+  return found == 2 && glm::dot(unit[0], unit[1]) < std::cos(state_.options.sharp_edge_rad);
+}
+
+Refusal Collapser::choose_ends() {
+  const std::uint8_t fu = state_.mesh.flags[star_.u];
+  const std::uint8_t fv = state_.mesh.flags[star_.v];
+  u_fixed_ = (fu & (point_frozen | point_corner)) != 0;
+  v_fixed_ = (fv & (point_frozen | point_corner)) != 0;
+  if (((fu | fv) & point_sharp) != 0 && !edge_is_sharp()) {
+    u_fixed_ = u_fixed_ || (fu & point_sharp) != 0;
+    v_fixed_ = v_fixed_ || (fv & point_sharp) != 0;
+  }
+  if (u_fixed_ && v_fixed_) return Refusal::Frozen;
+  u_may_go_ = !u_fixed_;
+  v_may_go_ = !v_fixed_;
+  if (state_.looks_matter && !state_.relaxed) {
     u_may_go_ = u_may_go_ && wedges_.stays_on_seam(star_, star_.u);
     v_may_go_ = v_may_go_ && wedges_.stays_on_seam(star_, star_.v);
     if (!u_may_go_ && !v_may_go_) return Refusal::Seam;
@@ -135,12 +177,12 @@ bool Collapser::try_place(const glm::dvec3& y) {
                   : at_v ? glm::vec3{state_.mesh.position[star_.v]}
                          : glm::vec3{origin + y};
   choice_.relative = glm::dvec3{choice_.place} - origin;
-  if (!keeps_orientation(star_, choice_.relative)) return false;
-  const bool u_frozen = (state_.mesh.flags[star_.u] & point_frozen) != 0;
-  const bool v_frozen = (state_.mesh.flags[star_.v] & point_frozen) != 0;
+  const Fit fit = fit_at(star_, choice_.relative);
+  if (!fit.upright) return false;
+  choice_.squared_distance = fit.squared_distance;
   bool keep_u = at_u ? true : at_v ? false : star_.faces_of_u >= star_.faces_of_v;
-  if (u_frozen || !u_may_go_) keep_u = true;
-  if (v_frozen || !v_may_go_) keep_u = false;
+  if (!u_may_go_) keep_u = true;
+  if (!v_may_go_) keep_u = false;
   choice_.kept = keep_u ? star_.u : star_.v;
   choice_.gone = keep_u ? star_.v : star_.u;
   choice_.moves = !(keep_u ? at_u : at_v);
@@ -149,14 +191,12 @@ bool Collapser::try_place(const glm::dvec3& y) {
 }
 
 Refusal Collapser::choose_place() {
-  quadric_ = sum_star(star_);
-  const bool u_frozen = (state_.mesh.flags[star_.u] & point_frozen) != 0;
-  const bool v_frozen = (state_.mesh.flags[star_.v] & point_frozen) != 0;
+  quadric_ = sum_star(star_, state_.line_weight);
   const Placement placement = state_.options.placement;
   const bool ends_only = placement == Placement::EndPoint || placement == Placement::Subset;
   // A place where the end that cannot go, or may not move, already is.
-  const bool must_u = u_frozen || (ends_only && !u_may_go_);
-  const bool must_v = v_frozen || (ends_only && !v_may_go_);
+  const bool must_u = u_fixed_ || (ends_only && !u_may_go_);
+  const bool must_v = v_fixed_ || (ends_only && !v_may_go_);
   const glm::dvec3 zero{0.0};
   bool found = false;
   if (must_u || must_v) {
@@ -168,28 +208,36 @@ Refusal Collapser::choose_place() {
     if (!found) found = try_place(u_better ? star_.e : zero);
   }
   if (!found) return Refusal::Flip;
-  if (choice_.cost > state_.cost_limit) return Refusal::Cost;
-  if (error_m() > state_.options.max_error_m) return Refusal::Cost;
-  if (choice_.cost + wedges_.plan(star_, choice_) > state_.cost_limit) return Refusal::Cost;
+  cost_ = infinity;
+  error_m_ = error_m();
+  if (error_m_ > state_.options.max_error_m) return Refusal::Cost;
+  cost_ = choice_.cost;
+  if (cost_ > cost_limit_) return Refusal::Cost;
+  cost_ += wedges_.plan(star_, choice_);
+  if (cost_ > cost_limit_) return Refusal::Cost;
   return Refusal::None;
 }
 
 float Collapser::error_m() const {
   const double before = std::max(state_.mesh.deviation_m[star_.u], state_.mesh.deviation_m[star_.v]);
-  const double added2 = quadric_.weight > 0.0 ? choice_.cost / quadric_.weight : 0.0;
-  return static_cast<float>(std::sqrt(before * before + error_growth * added2));
+  const double mean = quadric_.weight > 0.0 ? choice_.cost / quadric_.weight : 0.0;
+  const glm::dvec3 from_v = choice_.relative - star_.e;
+  // No point of the surface goes further than the end it hangs on.
+  const double travel = std::max(glm::dot(choice_.relative, choice_.relative), glm::dot(from_v, from_v));
+  const double added = std::min(std::max(error_growth * mean, choice_.squared_distance), travel);
+  return static_cast<float>(std::sqrt(before * before + added));
 }
 
 void Collapser::commit(std::uint32_t key) {
   WorkingMesh& mesh = state_.mesh;
-  const float error = error_m();
+  const float error = error_m_;
   wedges_.commit(star_, choice_, log_);
   const Side gone_side = choice_.gone == star_.u ? Side::U : Side::V;
   key = std::max({key, state_.last_key[star_.u], state_.last_key[star_.v]});
   for (const StarFace& f : star_.faces) {
     key = std::max({key, state_.last_key[f.a], state_.last_key[f.b]});
     Face& face = mesh.faces[f.index];
-    if (f.side == Side::Both) {
+    if (f.side == Side::Both || f.twin) {
       face.id = none;
     } else if (f.side == gone_side) {
       face.point[f.k] = choice_.kept;

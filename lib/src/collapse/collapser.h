@@ -23,8 +23,10 @@ struct PassState {
   const Mesh& source;
   const EdgeCollapseOptions& options;
   double diagonal_m = 0.0;
-  double cost_limit = 0.0;
+  double line_weight = 1.0;
+  double share = 0.0;                   // of the points that may go in this pass
   bool looks_matter = false;            // there are seams or several materials
+  bool loose = false;                   // the link condition is waived
   bool relaxed = false;                 // seams may be left where nothing else is possible
   std::vector<std::uint32_t> stamps;    // per point
   std::vector<std::uint32_t> last_key;  // per point: key of the last record that touched it
@@ -37,13 +39,27 @@ class Collapser {
       : state_(state), region_(region), log_(log), wedges_(state.mesh, state.source, state.options, state.diagonal_m) {}
 
   // `key` orders the record in the log; a later record that depends on it gets at least the same key.
-  Refusal attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key);
+  Refusal attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key, double cost_limit);
+
+  // Of the last edge that was refused for its cost; infinite if it will never do.
+  [[nodiscard]] double cost() const noexcept { return cost_; }
 
  private:
   [[nodiscard]] Refusal check_topology();
   [[nodiscard]] bool link_holds();
   [[nodiscard]] bool apexes_stay() const;
+  void find_twins();
+  // An edge at u or v with the first two of its faces.
+  struct Spoke {
+    std::uint32_t from, to, faces;
+    glm::dvec3 direction;
+    const StarFace* first;
+    const StarFace* second;
+  };
   void find_lines();
+  void add_spoke(std::uint32_t from, std::uint32_t to, const glm::dvec3& direction, const StarFace& face);
+  [[nodiscard]] bool looks_differ(const Spoke& spoke) const;
+  [[nodiscard]] bool edge_is_sharp() const;
   [[nodiscard]] Refusal choose_ends();
   [[nodiscard]] Refusal choose_place();
   [[nodiscard]] bool try_place(const glm::dvec3& y);
@@ -55,9 +71,14 @@ class Collapser {
   PassLog& log_;
   Wedges wedges_;
   Star star_;
+  std::vector<Spoke> spokes_;
   StarQuadric quadric_;
+  bool u_fixed_ = false, v_fixed_ = false;  // may neither go nor move
   bool u_may_go_ = false, v_may_go_ = false;
   Choice choice_;
+  double cost_limit_ = 0.0;
+  float error_m_ = 0.0F;
+  double cost_ = 0.0;
   std::uint32_t stamp_ = 0;
 };
 

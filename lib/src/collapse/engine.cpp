@@ -8,22 +8,32 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <queue>
 
 #include "base/parallel.h"
 #include "base/radix_sort.h"
 #include "collapse/candidates.h"
 #include "collapse/collapser.h"
+#include "collapse/parts.h"
+#include "collapse/weights.h"
 
 namespace lodestone::collapse {
 namespace {
 
-constexpr double first_share = 0.35;             // of the edges are tried in a pass
-constexpr double slack = 2.0;                    // exact cost over the estimated cost of the dearest edge tried
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t region_points = 16'384;  // fewer points than twice this are one region
-constexpr std::uint32_t max_regions = 64;
+constexpr std::uint32_t max_regions = 256;
 constexpr std::uint32_t key_steps = 8;  // of cost in a pass; within one step records are ordered in space
+
+// Share of the points that may go in one pass: less is nearer to strict order, and small meshes can afford it.
+double quota_share(std::uint32_t points) {
+  const double t = std::clamp((std::log2(std::max(points, 1U)) - 14.0) / 4.0, 0.0, 1.0);
+  return small_quota + (large_quota - small_quota) * t;
+}
 
 class Engine {
  public:
@@ -46,6 +56,10 @@ class Engine {
   void fill_regions(const Candidates& candidates);
   void collapse_region(Region& region, PassState& state) const;
   std::uint32_t flush();
+  bool prune(double limit_m);
+  bool relax();
+  bool prune_anew();
+  [[nodiscard]] CollapseReport report() const;
   bool pass(double share);
   [[nodiscard]] bool done() const { return faces_left_ <= options_.target_triangles || context_.cancelled(); }
 
@@ -55,10 +69,14 @@ class Engine {
   Sink& sink_;
   WorkingMesh mesh_;
   std::vector<Region> regions_;
+  std::array<std::uint32_t, refusal_count> last_refusals_{};  // of the last pass
   std::uint32_t faces_left_;
   std::uint32_t pass_ = 0;
   double diagonal_m_ = 0.0;
+  double error_m_ = 0.0;  // largest so far
   bool relaxed_ = false;
+  bool loose_ = false;
+  bool soup_ = false;  // not manifold to begin with
   bool looks_matter_ = false;
 };
 
@@ -86,16 +104,33 @@ void Engine::fill_regions(const Candidates& candidates) {
 }
 
 void Engine::collapse_region(Region& region, PassState& state) const {
-  radix_sort(region.edges);
+  // In a large mesh near enough in order of cost: neighbours come one after the other within a step of it.
+  if (state.mesh.point_count() < region_points) {
+    radix_sort(region.edges);
+  } else {
+    coarse_sort(region.edges);
+  }
   Collapser collapser{state, region.points, region.log};
-  const std::size_t count = region.edges.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % 4096 == 0 && context_.cancelled()) return;
-    const Candidate& c = region.edges[i];
-    const auto step = static_cast<std::uint32_t>(i * key_steps / count);
+  // Edges whose exact cost is above the estimate wait until their turn.
+  using Later = std::pair<double, std::size_t>;
+  std::priority_queue<Later, std::vector<Later>, std::greater<>> later;
+  const auto quota = static_cast<std::size_t>(std::ceil(state.share * region.points.size()));
+  std::size_t next = 0;
+  std::size_t tries = 0;
+  while (region.log.size() < quota && (next < region.edges.size() || !later.empty())) {
+    if (++tries % 4096 == 0 && context_.cancelled()) return;
+    const double listed = next < region.edges.size() ? std::bit_cast<float>(region.edges[next].key) : infinity;
+    const bool from_list = later.empty() || listed <= later.top().first;
+    const double cost = from_list ? listed : later.top().first;
+    const std::size_t at = from_list ? next++ : later.top().second;
+    if (!from_list) later.pop();
+    const Candidate& c = region.edges[at];
+    const auto step = static_cast<std::uint32_t>(region.log.size() * key_steps / quota);
     const std::uint32_t key = step << 24U | (c.u - region.points.begin) >> 6U;
-    const Refusal refusal = collapser.attempt(c.u, c.v, key);
+    const Refusal refusal = collapser.attempt(c.u, c.v, key, slack * cost);
     ++region.refusals[static_cast<std::size_t>(refusal)];
+    if (refusal == Refusal::Cost && std::isfinite(collapser.cost()))
+      later.emplace(collapser.cost() / slack * (1.0 + 1e-9), at);
   }
   region.order.resize(region.log.size());
   std::iota(region.order.begin(), region.order.end(), 0U);
@@ -113,6 +148,7 @@ std::uint32_t Engine::flush() {
       for (; at[r] < region.order.size() && region.log.key(region.order[at[r]]) >> 24U == step && !done(); ++at[r]) {
         const Edit edit = region.log.edit(region.order[at[r]]);
         sink_.record(edit);
+        error_m_ = std::max(error_m_, double{edit.error_m});
         faces_left_ -= static_cast<std::uint32_t>(edit.faces.size());
         ++records;
       }
@@ -123,11 +159,12 @@ std::uint32_t Engine::flush() {
 
 bool Engine::pass(double share) {
   compact(mesh_, context_);
-  const std::vector<Symmetric3> quadrics = sum_quadrics(mesh_, options_, context_);
+  const double lines = soup_ ? soup_line_weight : line_weight;
+  const std::vector<Symmetric3> quadrics = sum_quadrics(mesh_, {source_, options_, looks_matter_, lines}, context_);
   const Candidates candidates = find_candidates(mesh_, quadrics, options_.placement, share, context_);
   if (context_.cancelled() || candidates.edges.empty()) return false;
-  PassState state{mesh_, source_, options_, diagonal_m_, 0.0, looks_matter_, relaxed_, {}, {}};
-  state.cost_limit = slack * static_cast<double>(candidates.threshold);
+  PassState state{mesh_, source_, options_, diagonal_m_, lines, 0.0, looks_matter_, loose_, relaxed_, {}, {}};
+  state.share = quota_share(mesh_.point_count());
   state.stamps.assign(mesh_.point_count(), 0);
   state.last_key.assign(mesh_.point_count(), 0);
   cut_regions();
@@ -137,7 +174,43 @@ bool Engine::pass(double share) {
   });
   if (context_.cancelled()) return false;
   ++pass_;
+  last_refusals_ = {};
+  for (const Region& region : regions_) {
+    for (std::size_t i = 0; i < refusal_count; ++i) last_refusals_[i] += region.refusals[i];
+  }
   return flush() != 0;
+}
+
+// The last resort: parts may have come apart since they were found.
+bool Engine::prune_anew() {
+  if (!options_.prune_parts) return false;
+  compact(mesh_, context_);
+  find_parts(mesh_);
+  return prune(infinity);
+}
+
+// Gives up the next scruple; false if none is left.
+bool Engine::relax() {
+  if (!relaxed_ && looks_matter_) {
+    relaxed_ = true;
+    return true;
+  }
+  if (loose_) return false;
+  loose_ = true;
+  return true;
+}
+
+bool Engine::prune(double limit_m) {
+  if (done()) return false;
+  PassLog log;
+  limit_m = std::min(limit_m, options_.max_error_m);
+  error_m_ = std::max(error_m_, double{prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, log)});
+  for (std::size_t i = 0; i < log.size() && !done(); ++i) {
+    const Edit edit = log.edit(i);
+    sink_.record(edit);
+    faces_left_ -= static_cast<std::uint32_t>(edit.faces.size());
+  }
+  return log.size() != 0;
 }
 
 void Engine::drop_degenerate(const std::vector<FaceId>& faces) {
@@ -156,20 +229,45 @@ CollapseReport Engine::run() {
   WorkingMeshStart start = make_working_mesh(source_, options_, context_);
   mesh_ = std::move(start.mesh);
   diagonal_m_ = bounds(source_).diagonal_m();
-  looks_matter_ = mesh_.has_seams() || !source_.face_materials.empty();
+  looks_matter_ = options_.attributes == Attributes::All && (mesh_.has_seams() || !source_.face_materials.empty());
+  compact(mesh_, context_);
+  static_cast<void>(sum_quadrics(mesh_, {source_, options_, false, 1.0}, context_));
+  soup_ = std::any_of(mesh_.flags.begin(), mesh_.flags.end(), [](std::uint8_t f) { return (f & point_complex) != 0; });
+  loose_ = soup_;  // contacts come and go there anyway
   drop_degenerate(start.degenerate);
   double share = first_share;
   const double total = static_cast<double>(source_.triangle_count());
   while (!done()) {
     const std::uint32_t before = faces_left_;
     const bool any = pass(share);
+    prune(prune_share * error_m_);
     context_.report("collapse", 1.0 - faces_left_ / total);
-    if (!any && share >= 1.0) break;
-    share = before - faces_left_ <= before / 20 ? std::min(1.0, share * 2.0) : first_share;
+    if (!any && share >= 1.0 && !relax() && !prune_anew()) break;
+    const double wanted = 0.5 * quota_share(mesh_.point_count()) * before;
+    share = before - faces_left_ < wanted ? std::min(1.0, share * 2.0) : first_share;
   }
-  CollapseReport report;
-  report.target_reached = faces_left_ <= options_.target_triangles;
-  return report;
+  return report();
+}
+
+CollapseReport Engine::report() const {
+  CollapseReport result;
+  result.target_reached = faces_left_ <= options_.target_triangles;
+  if (result.target_reached) return result;
+  const double total = std::max(1.0, std::accumulate(last_refusals_.begin(), last_refusals_.end(), 0.0));
+  const auto share = [&](Refusal refusal) { return last_refusals_[static_cast<std::size_t>(refusal)] / total; };
+  result.locked_by_seam = share(Refusal::Seam);
+  result.locked_by_border = share(Refusal::Border);
+  result.locked_by_flip = share(Refusal::Flip);
+  result.locked_by_link = share(Refusal::Link);
+  result.locked_by_frozen = share(Refusal::Frozen);
+  const auto percent = [](double x) { return std::to_string(std::lround(100.0 * x)) + " %"; };
+  result.sentence = std::to_string(faces_left_) + " triangles are left: of the edges that could still collapse " +
+                    percent(result.locked_by_seam) + " are held by seams, " + percent(result.locked_by_border) +
+                    " by borders, " + percent(result.locked_by_flip) + " because a face would flip, " +
+                    percent(result.locked_by_link) + " because the surface would touch itself, " +
+                    percent(result.locked_by_frozen) + " by frozen or sharp vertices, " +
+                    percent(share(Refusal::Cost)) + " by the error limit";
+  return result;
 }
 
 }  // namespace

@@ -5,10 +5,20 @@
 // as lines with a fixed weight, so that borders, seams, sharp edges and contacts of three faces are one thing.
 #include "collapse/placement.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "collapse/weights.h"
 
 namespace lodestone::collapse {
 namespace {
+
+// Square of how far from u a vertex may sensibly go.
+double reach_squared(const Star& star) {
+  double reach = glm::dot(star.e, star.e);
+  for (const StarFace& f : star.faces) reach = std::max({reach, glm::dot(f.at_a, f.at_a), glm::dot(f.at_b, f.at_b)});
+  return reach;
+}
 
 // The minimum under the volume constraint, which holds only where the surface is closed around the edge.
 glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
@@ -16,20 +26,24 @@ glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
   const double pull = middle_weight * quadric.a.trace() + 1e-300;
   a.add_isotropic(pull);
   const Solver3 solve{a};
-  if (!solve.valid()) return 0.5 * star.e;
+  const double reach = reach_squared(star);
+  // Slivers that are almost without area say nothing about the place.
+  if (!solve.valid() || quadric.a.trace() < 1e-20 * reach * reach) return 0.5 * star.e;
   const glm::dvec3 free = solve(quadric.b + (0.5 * pull) * star.e);
+  if (!(glm::dot(free, free) <= reach)) return 0.5 * star.e;
   if (!star.plain) return free;
   const glm::dvec3 along = solve(quadric.volume_normal);
   const double slope = glm::dot(quadric.volume_normal, along);
   // A star that folds back on itself has hardly any volume normal: there the constraint would throw the vertex far
   // away.
-  if (slope * a.trace() < 1e-3 * glm::dot(quadric.volume_normal, quadric.volume_normal)) return free;
-  return free + along * ((quadric.volume - glm::dot(quadric.volume_normal, free)) / slope);
+  if (!(slope * a.trace() > 1e-3 * glm::dot(quadric.volume_normal, quadric.volume_normal))) return free;
+  const glm::dvec3 kept = free + along * ((quadric.volume - glm::dot(quadric.volume_normal, free)) / slope);
+  return glm::dot(kept, kept) <= reach ? kept : free;
 }
 
 }  // namespace
 
-StarQuadric sum_star(const Star& star) {
+StarQuadric sum_star(const Star& star, double weight_of_lines) {
   StarQuadric sum;
   for (const StarFace& f : star.faces) {
     sum.a.add_plane(f.normal);
@@ -44,9 +58,9 @@ StarQuadric sum_star(const Star& star) {
   for (const StarLine& line : star.lines) {
     const double length2 = glm::dot(line.direction, line.direction);
     Symmetric3 m;
-    m.add_line(line.direction, line_weight * length2);
+    m.add_line(line.direction, weight_of_lines * length2);
     sum.a += m;
-    sum.weight += line_weight * length2 * length2;
+    sum.weight += weight_of_lines * length2 * length2;
     if (line.from == star.u) continue;
     const glm::dvec3 b = m * star.e;
     sum.b += b;
@@ -73,16 +87,27 @@ glm::dvec3 best_place(const Star& star, const StarQuadric& quadric, Placement pl
   return quadric.cost(star.e) < quadric.cost(glm::dvec3{0.0}) ? star.e : glm::dvec3{0.0};
 }
 
-bool keeps_orientation(const Star& star, const glm::dvec3& y) {
+Fit fit_at(const Star& star, const glm::dvec3& y) {
+  Fit fit;
+  double u_away = std::numeric_limits<double>::infinity();
+  double v_away = u_away;
   for (const StarFace& f : star.faces) {
-    if (f.side == Side::Both) continue;
+    if (f.side == Side::Both || f.twin) continue;
     const glm::dvec3 normal = glm::cross(f.at_a - y, f.at_b - y);
     const double before = glm::dot(f.normal, f.normal);
     const double after = glm::dot(normal, normal);
     const double turn = glm::dot(f.normal, normal);
-    if (before > 0.0 && (turn <= 0.0 || turn * turn < flip_cosine * flip_cosine * before * after)) return false;
+    if (before > 0.0 && (turn <= 0.0 || turn * turn < flip_cosine * flip_cosine * before * after)) return fit;
+    if (!(after > 0.0)) continue;
+    const double from_u = glm::dot(normal, y);
+    const double from_v = glm::dot(normal, star.e - y);
+    u_away = std::min(u_away, from_u * from_u / after);
+    v_away = std::min(v_away, from_v * from_v / after);
   }
-  return true;
+  const double away = std::max(u_away, v_away);
+  fit.upright = true;
+  fit.squared_distance = away < std::numeric_limits<double>::infinity() ? away : 0.0;
+  return fit;
 }
 
 }  // namespace lodestone::collapse

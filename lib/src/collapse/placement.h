@@ -21,12 +21,16 @@ struct StarQuadric {
     return std::max(a.form(y) - 2.0 * glm::dot(b, y) + c, 0.0);
   }
 };
-[[nodiscard]] StarQuadric sum_star(const Star& star);
+[[nodiscard]] StarQuadric sum_star(const Star& star, double weight_of_lines);
 
 // The best place that `placement` allows, relative to u.
 [[nodiscard]] glm::dvec3 best_place(const Star& star, const StarQuadric& quadric, Placement placement);
 
-// True if no face that stays would turn too far or lose its area when both ends go to y.
-[[nodiscard]] bool keeps_orientation(const Star& star, const glm::dvec3& y);
+// How the faces that stay take it when both ends go to y.
+struct Fit {
+  bool upright = false;           // none turns too far or loses its area
+  double squared_distance = 0.0;  // of the farther of the old ends from the planes of the new faces
+};
+[[nodiscard]] Fit fit_at(const Star& star, const glm::dvec3& y);
 
 }  // namespace lodestone::collapse

@@ -9,6 +9,7 @@
 
 namespace lodestone::collapse {
 
+// Which end of the edge a face touches.
 enum class Side : std::uint8_t { U, V, Both };
 
 // A face seen from its corner at u (sides U and Both) or at v (side V): a and b are the next two points.
@@ -18,6 +19,7 @@ struct StarFace {
   std::uint32_t k = 0;      // corner at the near end
   std::uint32_t a = 0, b = 0;
   Side side = Side::U;
+  bool twin = false;  // would coincide with an earlier face of the star: goes with the collapse
   glm::dvec3 at_a{0.0}, at_b{0.0};
   glm::dvec3 normal{0.0};  // twice the area long
 };

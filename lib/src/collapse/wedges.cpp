@@ -34,6 +34,19 @@ glm::u8vec4 to_color(const glm::dvec4& c) {
 
 }  // namespace
 
+bool same_look(const WorkingMesh& mesh, VertexId a, VertexId b) {
+  if (a == b) return true;
+  if (!mesh.values.uvs.empty() && mesh.values.uvs[a] != mesh.values.uvs[b]) return false;
+  return mesh.values.colors.empty() || mesh.values.colors[a] == mesh.values.colors[b];
+}
+
+bool seam_between(const WorkingMesh& mesh, const Mesh& source, const Face& f, const Face& g, std::uint32_t p,
+                  std::uint32_t q) {
+  return source.face_material(f.id) != source.face_material(g.id) ||
+         !same_look(mesh, mesh.vertex_of(f, corner_at(f, p)), mesh.vertex_of(g, corner_at(g, p))) ||
+         !same_look(mesh, mesh.vertex_of(f, corner_at(f, q)), mesh.vertex_of(g, corner_at(g, q)));
+}
+
 Wedges::Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions& options, double diagonal_m)
     : mesh_(mesh),
       source_(source),
@@ -42,16 +55,11 @@ Wedges::Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions&
       normal_scale_(options.normal_weight * diagonal_m),
       color_scale_(options.color_weight * diagonal_m / 255.0) {}
 
-bool Wedges::steered() const noexcept {
-  return options_.attributes == Attributes::All &&
-         (!mesh_.values.uvs.empty() || !mesh_.values.normals.empty() || !mesh_.values.colors.empty());
+bool Wedges::has_looks() const noexcept {
+  return !mesh_.values.uvs.empty() || !mesh_.values.normals.empty() || !mesh_.values.colors.empty();
 }
 
-bool Wedges::same_look(VertexId a, VertexId b) const {
-  if (a == b) return true;
-  if (!mesh_.values.uvs.empty() && mesh_.values.uvs[a] != mesh_.values.uvs[b]) return false;
-  return mesh_.values.colors.empty() || mesh_.values.colors[a] == mesh_.values.colors[b];
-}
+bool Wedges::steered() const noexcept { return options_.attributes == Attributes::All && has_looks(); }
 
 bool Wedges::stays_on_seam(const Star& star, std::uint32_t gone) const {
   for (const StarFace& f : star.faces) {
@@ -63,7 +71,7 @@ bool Wedges::stays_on_seam(const Star& star, std::uint32_t gone) const {
       const Face& on_edge = mesh_.faces[s.index];
       const std::uint32_t k = corner_at(on_edge, gone);
       return source_.face_material(on_edge.id) == source_.face_material(face.id) &&
-             same_look(mesh_.vertex_of(on_edge, k), vertex);
+             same_look(mesh_, mesh_.vertex_of(on_edge, k), vertex);
     });
     if (!found) return false;
   }
@@ -179,7 +187,8 @@ double Wedges::residual(const Star& star, const Choice& choice) {
 
 double Wedges::plan(const Star& star, const Choice& choice) {
   make_pairs(star, choice);
-  if (mesh_.has_seams() || steered() || choice.moves) predict(star, choice);
+  groups_.clear();
+  if (mesh_.has_seams() || (has_looks() && (steered() || choice.moves))) predict(star, choice);
   return steered() ? residual(star, choice) : 0.0;
 }
 
@@ -216,7 +225,7 @@ void Wedges::turn_flat_normals(const Star& star, const Choice& choice, PassLog& 
   if (!mesh_.has_seams() || mesh_.values.normals.empty()) return;
   for (const StarFace& f : star.faces) {
     const Face& face = mesh_.faces[f.index];
-    if (f.side == Side::Both) continue;
+    if (f.side == Side::Both || f.twin) continue;
     const double length = glm::length(f.normal);
     const glm::dvec3 turned = glm::cross(f.at_a - choice.relative, f.at_b - choice.relative);
     for (std::uint32_t step = 1; step < 3; ++step) {
@@ -246,7 +255,7 @@ void Wedges::commit_single(const Star& star, const Choice& choice, PassLog& log)
   const Side gone_side = choice.gone == star.u ? Side::U : Side::V;
   for (const StarFace& f : star.faces) {
     const FaceId id = mesh_.faces[f.index].id;
-    if (f.side == Side::Both) {
+    if (f.side == Side::Both || f.twin) {
       log.faces.push_back(id);
     } else if (f.side == gone_side) {
       log.corners.push_back({3 * id + f.k, kept});
@@ -265,7 +274,7 @@ void Wedges::commit(const Star& star, const Choice& choice, PassLog& log) {
   dead_.clear();
   const Side gone_side = choice.gone == star.u ? Side::U : Side::V;
   for (const StarFace& f : star.faces) {
-    if (f.side != Side::Both) continue;
+    if (f.side != Side::Both && !f.twin) continue;
     Face& face = mesh_.faces[f.index];
     log.faces.push_back(face.id);
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -275,7 +284,7 @@ void Wedges::commit(const Star& star, const Choice& choice, PassLog& log) {
     face.id = none;
   }
   for (const StarFace& f : star.faces) {
-    if (f.side != gone_side) continue;
+    if (f.side != gone_side || f.twin) continue;
     const Face& face = mesh_.faces[f.index];
     VertexId& corner = mesh_.corner_vertex[3 * std::size_t{face.id} + f.k];
     const VertexId to = target_of(corner);

@@ -14,18 +14,23 @@ namespace lodestone::collapse {
 // A collapse that may be done: `gone` merges into `kept`, which moves to `place`.
 struct Choice {
   std::uint32_t gone = 0, kept = 0;
-  glm::vec3 place{0.0F};     // as stored
-  glm::dvec3 relative{0.0};  // the same relative to u
-  double cost = 0.0;         // of the geometry
-  bool moves = false;        // kept does not stay where it was
+  glm::vec3 place{0.0F};          // as stored
+  glm::dvec3 relative{0.0};       // the same relative to u
+  double cost = 0.0;              // of the geometry
+  double squared_distance = 0.0;  // see Fit
+  bool moves = false;             // kept does not stay where it was
 };
+
+// True if two vertices of one point have the same uv and colour. Normals do not make seams.
+[[nodiscard]] bool same_look(const WorkingMesh& mesh, VertexId a, VertexId b);
+
+// True if two faces on the edge between points p and q differ in material, or in looks at either end.
+[[nodiscard]] bool seam_between(const WorkingMesh& mesh, const Mesh& source, const Face& f, const Face& g,
+                                std::uint32_t p, std::uint32_t q);
 
 class Wedges {
  public:
   Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions& options, double diagonal_m);
-
-  // True if two vertices of one point have the same uv and colour. Normals do not make seams.
-  [[nodiscard]] bool same_look(VertexId a, VertexId b) const;
 
   // True if every look (material, uv, colour) that faces have at `gone` also occurs there on a face at the edge.
   [[nodiscard]] bool stays_on_seam(const Star& star, std::uint32_t gone) const;
@@ -58,6 +63,7 @@ class Wedges {
     std::uint32_t point = none;  // where it was
   };
 
+  [[nodiscard]] bool has_looks() const noexcept;
   [[nodiscard]] bool steered() const noexcept;
   [[nodiscard]] VertexId target_of(VertexId vertex) const;
   Group& group_of(VertexId vertex);

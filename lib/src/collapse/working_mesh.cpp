@@ -38,21 +38,6 @@ std::vector<std::uint32_t> morton_order(const Mesh& source, const Weld& weld) {
   return order;
 }
 
-void find_parts(WorkingMesh& mesh) {
-  DisjointSets sets{mesh.point_count()};
-  for (const Face& f : mesh.faces) {
-    sets.join(f.point[0], f.point[1]);
-    sets.join(f.point[0], f.point[2]);
-  }
-  mesh.part.assign(mesh.point_count(), none);
-  mesh.part_count = 0;
-  for (std::uint32_t p = 0; p < mesh.point_count(); ++p) {
-    const std::uint32_t root = sets.find(p);  // the smallest id of its set, numbered before the others
-    mesh.part[p] = root == p ? mesh.part_count++ : mesh.part[root];
-  }
-  if (mesh.part_count <= 1) mesh.part.clear();
-}
-
 void sort_faces(std::vector<Face>& faces, std::uint32_t point_count) {
   std::vector<std::uint32_t> at(std::size_t{point_count} + 1, 0);
   const auto key = [](const Face& f) { return std::min({f.point[0], f.point[1], f.point[2]}); };
@@ -109,6 +94,21 @@ void drop_points(WorkingMesh& mesh, const std::vector<std::uint32_t>& uses) {
 }
 
 }  // namespace
+
+void find_parts(WorkingMesh& mesh) {
+  DisjointSets sets{mesh.point_count()};
+  for (const Face& f : mesh.faces) {
+    sets.join(f.point[0], f.point[1]);
+    sets.join(f.point[0], f.point[2]);
+  }
+  mesh.part.assign(mesh.point_count(), none);
+  mesh.part_count = 0;
+  for (std::uint32_t p = 0; p < mesh.point_count(); ++p) {
+    const std::uint32_t root = sets.find(p);  // the smallest id of its set, numbered before the others
+    mesh.part[p] = root == p ? mesh.part_count++ : mesh.part[root];
+  }
+  if (mesh.part_count <= 1) mesh.part.clear();
+}
 
 WorkingMeshStart make_working_mesh(const Mesh& source, const EdgeCollapseOptions& options, const Context& context) {
   WorkingMeshStart start;

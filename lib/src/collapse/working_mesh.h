@@ -19,9 +19,11 @@ struct Face {
 enum PointFlag : std::uint8_t {
   point_border = 1,   // on edges with one face only, otherwise manifold
   point_complex = 2,  // non-manifold, or two sheets touch
-  point_line = 4,     // on a seam, material border or sharp edge
+  point_line = 4,     // on a seam or material border
   point_frozen = 8,   // never moves, never goes
   point_locked = 16,  // taken part in a collapse of this pass
+  point_sharp = 32,   // on a sharp edge that passes through: may only go along it
+  point_corner = 64,  // where sharp edges end or meet: stays
 };
 
 [[nodiscard]] inline std::uint32_t corner_at(const Face& f, std::uint32_t point) noexcept {
@@ -60,6 +62,9 @@ struct WorkingMeshStart {
 };
 [[nodiscard]] WorkingMeshStart make_working_mesh(const Mesh& source, const EdgeCollapseOptions& options,
                                                  const Context& context);
+
+// Names the connected parts.
+void find_parts(WorkingMesh& mesh);
 
 // Drops dead faces and, when many are gone, unused points; rebuilds `first` and `corners`.
 void compact(WorkingMesh& mesh, const Context& context);

@@ -45,6 +45,21 @@ class TriangleBvh {
     return best;
   }
 
+  // Nearest triangle among those for which wanted(face) holds and that lie nearer than `limit`; face `none` if there is none.
+  template <class Wanted>
+  [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted) const {
+    Nearest best;
+    best.squared_distance = limit * limit;
+    if (nodes_.empty()) return best;
+    descend(
+        p, [&] { return best.squared_distance; },
+        [&](std::uint32_t slot) {
+          if (wanted(faces_[slot])) consider(p, slot, best);
+          return true;
+        });
+    return best;
+  }
+
   // Calls visit(face) for every triangle no farther than `radius` for which wanted(face), which is asked first, holds;
   // visit returns false to stop.
   template <class Wanted, class Visit>

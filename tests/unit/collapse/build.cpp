@@ -15,7 +15,7 @@ TEST_CASE("every family builds down to its end, exact and monotone") {
          {Placement::Optimal, Placement::OnEdge, Placement::Midpoint, Placement::EndPoint, Placement::Subset}) {
       CAPTURE(name, static_cast<int>(placement));
       const auto built = build_by_edge_collapse(mesh, {.placement = placement});
-      REQUIRE(built.ok());
+      if (!built.ok()) FAIL(to_line(built.error()));
       const ModelReport report = validate(*built->model);
       CHECK(report.fault.empty());
       CHECK(report.exact);
