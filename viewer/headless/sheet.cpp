@@ -69,8 +69,10 @@ Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const
   sheet.pixels.assign(static_cast<std::size_t>(sheet.width) * sheet.height * 3, 255);
 
   const std::uint32_t finest = model->info(model->record_count()).triangles;
+  const double base_ratio = static_cast<double>(model->info(0).triangles) / std::max(1U, finest);
+  const double end_ratio = std::max({options.coarsest_ratio, base_ratio, 1e-9});
   for (std::uint32_t i = 0; i < options.levels; ++i) {
-    const double ratio = options.levels == 1 ? 1.0 : std::pow(options.coarsest_ratio, double(i) / (options.levels - 1));
+    const double ratio = options.levels == 1 ? 1.0 : std::pow(end_ratio, double(i) / (options.levels - 1));
     const Level level = model->level_of_triangles(static_cast<std::uint32_t>(std::lround(ratio * finest)));
     cursor.jump(level);
     geometry.update(cursor);
