@@ -29,8 +29,9 @@ struct Camera {
   std::optional<glm::dvec3> eye_m;     ///< in world coordinates (with the model's origin)
   std::optional<glm::dvec3> target_m;  ///< looked at; the middle of the model if not given
   double fov_y_rad = 0.6;              ///< full vertical angle, 0.01..3
-  double yaw_rad = -0.62;              ///< of the framed view: 0 looks north, negative moves the eye to the west
-  double pitch_rad = 0.38;             ///< of the framed view: above the horizon, -1.5..1.5
+  /// Of the framed view: 0 looks north, negative moves the eye to the west; not given: the side most triangles face.
+  std::optional<double> yaw_rad;
+  double pitch_rad = 0.38;  ///< of the framed view: above the horizon, -1.5..1.5
 };
 
 struct RenderOptions {

@@ -10,9 +10,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Result<Picture> picture_of(const DrawArrays& arrays, const Surroundings& surroundings, const Box& bounds,
-                           const RenderOptions& options) {
-  const auto view = view_of(options, bounds, surroundings.origin);
+Result<Picture> picture_of(const DrawArrays& arrays, const DrawArrays& finest, const Surroundings& surroundings,
+                           const Box& bounds, const RenderOptions& options) {
+  const auto view = view_of(options, bounds, surroundings.origin, finest);
   if (!view) return view.error();
   auto stage = Stage::create();
   if (!stage) return stage.error();
@@ -38,12 +38,14 @@ Result<Picture> picture_of(const DrawArrays& arrays, const Surroundings& surroun
 
 Result<Picture> render_mesh(const Mesh& mesh, const RenderOptions& options) {
   const SortedMesh sorted{mesh};
-  return picture_of(sorted.arrays(), mesh, bounds(mesh), options);
+  return picture_of(sorted.arrays(), sorted.arrays(), mesh, bounds(mesh), options);
 }
 
 Result<Picture> render_level(std::shared_ptr<const ProgressiveModel> model, Level level, const RenderOptions& options) {
   const Cursor cursor{model, {.motion = Motion::Hard, .start_level = level}};
-  return picture_of(arrays_of(cursor), model->data(), model->bounds(), options);
+  // Every level is seen from the same side.
+  const Cursor finest{model, {.motion = Motion::Hard, .start_level = model->record_count()}};
+  return picture_of(arrays_of(cursor), arrays_of(finest), model->data(), model->bounds(), options);
 }
 
 }  // namespace lodestone::render

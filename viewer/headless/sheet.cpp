@@ -48,7 +48,8 @@ Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const
       options.coarsest_ratio > 1.0) {
     return Error{ErrorCode::BadArgument, "a sheet has 1 to 100 levels and ends at a share above 0 and up to 1", ""};
   }
-  const auto view = view_of(render, model->bounds(), model->data().origin);
+  Cursor cursor{model, {.motion = Motion::Hard, .start_level = model->record_count()}};
+  const auto view = view_of(render, model->bounds(), model->data().origin, arrays_of(cursor));
   if (!view) return view.error();
   auto stage = Stage::create();
   if (!stage) return stage.error();
@@ -57,7 +58,6 @@ Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const
   if (!frame) return frame.error();
 
   const Surfaces surfaces{on.gl(), model->data()};
-  Cursor cursor{model, {.motion = Motion::Hard, .start_level = model->record_count()}};
   Geometry geometry{on.gl(), arrays_of(cursor)};
   const Item item{.geometry = &geometry, .surfaces = &surfaces, .size_m = model->bounds().diagonal_m()};
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "stage.h"
 
+#include "../render/detailed_side.h"
+
 #include <algorithm>
 
 namespace lodestone::render {
@@ -20,7 +22,8 @@ Result<std::unique_ptr<Stage>> Stage::create() {
                                           std::move(presenter).value()}};
 }
 
-Result<View> view_of(const RenderOptions& options, const Box& bounds, const glm::dvec3& origin) {
+Result<View> view_of(const RenderOptions& options, const Box& bounds, const glm::dvec3& origin,
+                     const DrawArrays& finest) {
   const auto refuse = [](const char* message) { return Error{ErrorCode::BadArgument, message, ""}; };
   if (options.width_px == 0 || options.height_px == 0) return refuse("a picture needs at least one pixel");
   if (options.supersample < 1 || options.supersample > 4) return refuse("supersampling goes from 1 to 4");
@@ -29,7 +32,8 @@ Result<View> view_of(const RenderOptions& options, const Box& bounds, const glm:
     return refuse("the field of view must lie between 0.01 and 3 radians");
   }
   if (!camera.eye_m) {
-    const Orbit orbit{camera.yaw_rad, std::clamp(camera.pitch_rad, -1.5, 1.5)};
+    const Orbit orbit{camera.yaw_rad ? *camera.yaw_rad : detailed_yaw_rad(finest),
+                      std::clamp(camera.pitch_rad, -1.5, 1.5)};
     View view = framed_view(bounds, orbit, options.width_px, options.height_px, camera.fov_y_rad);
     if (camera.target_m) view.eye += *camera.target_m - origin - bounds.center();
     return view;

@@ -32,8 +32,9 @@ class Stage {
   Presenter presenter_;
 };
 
-/// The view that the options ask for, in the frame of a model with these bounds and origin.
-[[nodiscard]] Result<View> view_of(const RenderOptions& options, const Box& bounds, const glm::dvec3& origin);
+/// The view that the options ask for, in the frame of a model with these bounds, origin and finest faces.
+[[nodiscard]] Result<View> view_of(const RenderOptions& options, const Box& bounds, const glm::dvec3& origin,
+                                   const DrawArrays& finest);
 
 [[nodiscard]] inline FrameSize frame_size(const RenderOptions& options) {
   return {options.width_px, options.height_px, options.supersample};

@@ -220,7 +220,8 @@ Result<SweepStyle> sweep_style(const std::string& name) {
 Result<SweepReport> sweep(std::shared_ptr<const ProgressiveModel> model, const SweepOptions& options,
                           const Context& context) {
   if (auto status = check(options, *model); !status) return status.error();
-  const auto view = view_of(options.render, model->bounds(), model->data().origin);
+  const Cursor finest{model, {.motion = Motion::Hard, .start_level = model->record_count()}};
+  const auto view = view_of(options.render, model->bounds(), model->data().origin, arrays_of(finest));
   if (!view) return view.error();
   auto stage = Stage::create();
   if (!stage) return stage.error();

@@ -5,6 +5,8 @@
 
 #include <lodestone/formats.h>
 
+#include "../render/detailed_side.h"
+
 namespace lodestone::render {
 namespace {
 
@@ -107,7 +109,7 @@ void App::show(const Loader::Model& model) {
   int height = 0;
   window_->framebuffer_size(width, height);
   camera_.frame(model->bounds(), static_cast<std::uint32_t>(std::max(1, width)),
-                static_cast<std::uint32_t>(std::max(1, height)));
+                static_cast<std::uint32_t>(std::max(1, height)), detailed_yaw_rad(arrays_of(shown_->cursor)));
   if (first && options_.ratio) {
     const auto finest = static_cast<double>(model->info(model->record_count()).triangles);
     control_.slider = control_.slider_of(static_cast<std::uint32_t>(*options_.ratio * finest));
@@ -215,7 +217,7 @@ void App::obey(const PanelResult& asked) {
   if (asked.changed) still_frames_ = 0;
   if (asked.frame_model) {
     const View view = camera_.view();
-    camera_.frame(shown_->model->bounds(), view.width_px, view.height_px);
+    camera_.frame(shown_->model->bounds(), view.width_px, view.height_px, detailed_yaw_rad(arrays_of(shown_->cursor)));
   }
   // The time of a morph is fixed at construction: a new cursor goes on where the old one is.
   if (asked.restart_cursor) {

@@ -13,9 +13,9 @@ constexpr double fov_y_rad = 0.6;
 
 }  // namespace
 
-void OrbitCamera::frame(const Box& bounds, std::uint32_t width_px, std::uint32_t height_px) {
+void OrbitCamera::frame(const Box& bounds, std::uint32_t width_px, std::uint32_t height_px, double yaw_rad) {
   resize(width_px, height_px);
-  orbit_ = Orbit{};
+  orbit_ = Orbit{.yaw_rad = yaw_rad};
   size_m_ = std::max(bounds.diagonal_m(), 1e-6);
   const View view = framed_view(bounds, orbit_, width_px_, height_px_, fov_y_rad);
   const glm::dvec3 center = bounds.empty() ? glm::dvec3{0.0} : bounds.center();

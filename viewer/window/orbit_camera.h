@@ -8,8 +8,8 @@ namespace lodestone::render {
 
 class OrbitCamera {
  public:
-  /// Frames the box in a three-quarter view.
-  void frame(const Box& bounds, std::uint32_t width_px, std::uint32_t height_px);
+  /// Frames the box in a three-quarter view from this side.
+  void frame(const Box& bounds, std::uint32_t width_px, std::uint32_t height_px, double yaw_rad = Orbit{}.yaw_rad);
   void resize(std::uint32_t width_px, std::uint32_t height_px);
 
   /// Mouse moved by so many pixels: a drag over the picture's height is half a turn.
