@@ -33,7 +33,8 @@ Refusal Collapser::check_topology() {
     if ((fu & fv & point_border) != 0 && star_.shared != 1) return Refusal::Link;
     if (!link_holds()) return Refusal::Link;
   }
-  if (((fu | fv) & (point_border | point_complex)) != 0 && !apexes_stay()) return Refusal::Border;
+  const bool open = ((fu | fv) & (point_border | point_complex)) != 0;
+  if ((open || state_.loose) && !apexes_stay()) return Refusal::Border;
   if (state_.loose) find_twins();
   if (!star_.plain) find_lines();
   return Refusal::None;

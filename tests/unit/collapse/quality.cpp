@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/edge_collapse.h>
+#include <lodestone/formats.h>
+#include <lodestone/metrics.h>
+
+#include <catch2/catch.hpp>
+
+#include "data.h"
+#include "shapes.h"
+
+namespace lodestone {
+namespace {
+
+// The claimed error times this bounds the 99.9th percentile of the sampled two-sided distance.
+constexpr double honesty = 3.0;
+
+Mesh positions_only(const Mesh& mesh) {
+  Mesh result;
+  result.materials.emplace_back();
+  result.vertices.positions = mesh.vertices.positions;
+  result.indices = mesh.indices;
+  merge_identical_vertices(result);
+  return result;
+}
+
+EdgeCollapseOptions down_to(double share, const Mesh& mesh) {
+  EdgeCollapseOptions options;
+  options.target_triangles = static_cast<std::uint32_t>(share * mesh.triangle_count());
+  return options;
+}
+
+TEST_CASE("the claimed error bounds the measured one within the stated factor") {
+  for (const auto& [name, mesh] :
+       {test::NamedMesh{"sphere", test::sphere(60, 90)}, test::NamedMesh{"grid", test::grid(60, 50)},
+        test::NamedMesh{"seamed grid", test::seamed_grid(60, 50)}, test::NamedMesh{"fins", test::fins(7)},
+        test::NamedMesh{"scattered cubes", test::scattered_cubes(60, 3)}}) {
+    for (const double share : {0.5, 0.2, 0.05}) {
+      CAPTURE(name, share);
+      const auto result = simplify(mesh, down_to(share, mesh));
+      REQUIRE(result.ok());
+      const auto distance = compare(mesh, result->mesh, {.samples = 50'000});
+      REQUIRE(distance.ok());
+      CHECK(distance->p999_m <= honesty * result->error_m + 1e-6 * distance->diagonal_m);
+    }
+  }
+}
+
+TEST_CASE("a closed manifold stays one, whatever the placement") {
+  const Mesh mesh = test::sphere(40, 60);
+  for (const Placement placement :
+       {Placement::Optimal, Placement::OnEdge, Placement::Midpoint, Placement::EndPoint, Placement::Subset}) {
+    CAPTURE(static_cast<int>(placement));
+    EdgeCollapseOptions options = down_to(0.05, mesh);
+    options.placement = placement;
+    const auto result = simplify(mesh, options);
+    REQUIRE(result.ok());
+    CHECK(result->report.target_reached);
+    const MeshReport report = inspect(result->mesh);
+    CHECK(report.boundary_edges == 0);
+    CHECK(report.non_manifold_edges == 0);
+    for (std::size_t i = 0; i < result->mesh.indices.size(); i += 3) {  // the centre is inside: no face is flipped
+      const auto& p = result->mesh.vertices.positions;
+      const glm::vec3 a = p[result->mesh.indices[i]];
+      const glm::vec3 b = p[result->mesh.indices[i + 1]];
+      const glm::vec3 c = p[result->mesh.indices[i + 2]];
+      CHECK(glm::dot(glm::cross(b - a, c - a), a + b + c) > 0.0F);
+    }
+  }
+}
+
+TEST_CASE("flat meshes reduce to next to nothing without error, faceted and unwelded ones too") {
+  for (const Mesh& mesh : {test::grid(16, 16, 0.0F), test::unwelded(test::grid(16, 16, 0.0F))}) {
+    EdgeCollapseOptions options;
+    options.max_error_m = 1e-5;
+    const auto result = simplify(mesh, options);
+    REQUIRE(result.ok());
+    CHECK(result->mesh.triangle_count() <= 10);
+    CHECK(bounds(result->mesh).diagonal_m() == Approx(bounds(mesh).diagonal_m()));
+  }
+}
+
+TEST_CASE("no hole opens at a seam or between materials") {
+  const Mesh mesh = test::seamed_grid(40, 30);
+  for (const double share : {0.5, 0.1, 0.03}) {
+    const auto result = simplify(mesh, down_to(share, mesh));
+    REQUIRE(result.ok());
+    const Mesh welded = positions_only(result->mesh);
+    // One rectangle without holes: V - E + F = 1 over its corner points.
+    const MeshReport report = inspect(welded);
+    CHECK(report.non_manifold_edges == 0);
+    const auto edges = (3 * welded.triangle_count() + report.boundary_edges) / 2;
+    CHECK(static_cast<int>(report.corner_points) - static_cast<int>(edges) +
+              static_cast<int>(welded.triangle_count()) ==
+          1);
+    const auto distance = compare(mesh, result->mesh, {.samples = 20'000});
+    REQUIRE(distance.ok());
+    CHECK(distance->p999_m <= honesty * result->error_m + 1e-6);
+  }
+}
+
+TEST_CASE("frozen vertices and locked borders stay where they are") {
+  const Mesh mesh = test::grid(30, 30);
+  EdgeCollapseOptions options = down_to(0.2, mesh);
+  options.borders = Borders::Lock;
+  options.frozen.assign(mesh.vertex_count(), 0);
+  options.frozen[15 * 31 + 15] = 1;
+  const auto result = simplify(mesh, options);
+  REQUIRE(result.ok());
+  CHECK(inspect(result->mesh).boundary_edges == 120);
+  const auto& p = result->mesh.vertices.positions;
+  CHECK(std::count(p.begin(), p.end(), mesh.vertices.positions[15 * 31 + 15]) == 1);
+}
+
+TEST_CASE("sharp edges are kept as features") {
+  const Mesh mesh = test::cube();
+  EdgeCollapseOptions options;
+  options.sharp_edge_rad = 1.0;
+  const auto result = simplify(mesh, options);
+  REQUIRE(result.ok());
+  CHECK(result->mesh.triangle_count() == mesh.triangle_count());
+  CHECK(result->report.locked_by_frozen > 0.9);
+  CHECK_FALSE(result->report.sentence.empty());
+}
+
+TEST_CASE("subset placement moves no vertex of a smooth mesh") {
+  const Mesh mesh = test::sphere(30, 40);
+  EdgeCollapseOptions options;
+  options.placement = Placement::Subset;
+  const auto built = build_by_edge_collapse(mesh, options);
+  REQUIRE(built.ok());
+  CHECK(built->model->record_count() > 100);
+  CHECK(built->model->data().value_xor.empty());
+}
+
+TEST_CASE("a limit on the error is kept") {
+  const Mesh mesh = test::sphere(60, 90);
+  EdgeCollapseOptions options;
+  options.max_error_m = 0.002;
+  const auto result = simplify(mesh, options);
+  REQUIRE(result.ok());
+  CHECK(result->error_m <= 0.002);
+  CHECK(result->mesh.triangle_count() < mesh.triangle_count() / 2);
+}
+
+TEST_CASE("many small parts do not keep a target from being reached, unless they must not vanish") {
+  const Mesh mesh = test::scattered_cubes(40, 7);
+  EdgeCollapseOptions options = down_to(0.05, mesh);
+  const auto pruned = simplify(mesh, options);
+  REQUIRE(pruned.ok());
+  CHECK(pruned->report.target_reached);
+  options.prune_parts = false;
+  const auto kept = simplify(mesh, options);
+  REQUIRE(kept.ok());
+  CHECK_FALSE(kept->report.target_reached);
+  CHECK_FALSE(kept->report.sentence.empty());
+}
+
+TEST_CASE("real buildings reach every target and stay near") {
+  LODESTONE_REQUIRE_DATA(root);
+  for (const char* id : {"4018215", "4018267", "4018210"}) {
+    const auto loaded = read_mesh(root / "buildings" / id / (std::string{id} + ".obj"));
+    REQUIRE(loaded.ok());
+    const Mesh mesh = positions_only(loaded->mesh);
+    for (const double share : {0.5, 0.1, 0.02}) {
+      CAPTURE(id, share);
+      EdgeCollapseOptions options = down_to(share, mesh);
+      options.attributes = Attributes::None;
+      const auto result = simplify(mesh, options);
+      REQUIRE(result.ok());
+      CHECK(result->report.target_reached);
+      const auto distance = compare(mesh, result->mesh, {.samples = 50'000});
+      REQUIRE(distance.ok());
+      CHECK(distance->p999_m <= honesty * result->error_m);
+      if (share == 0.1) CHECK(distance->rms_m < 1e-3 * distance->diagonal_m);
+    }
+  }
+}
+
+TEST_CASE("a real building with its looks builds exactly down to its end") {
+  LODESTONE_REQUIRE_DATA(root);
+  const auto loaded = read_mesh(root / "buildings" / "4018115" / "4018115.obj");
+  REQUIRE(loaded.ok());
+  const auto built = build_by_edge_collapse(loaded->mesh);
+  REQUIRE(built.ok());
+  const ModelReport report = validate(*built->model);
+  CHECK(report.fault.empty());
+  CHECK(compare_with_source(*built->model, loaded->mesh).empty());
+}
+
+TEST_CASE("a real outcrop with its uv kept stays within the figures of the best geometry-only peer") {
+  LODESTONE_REQUIRE_DATA(root);
+  const auto loaded = read_mesh(root / "outcrops" / "sol1151" / "sol1151-wheel-measure.obj");
+  REQUIRE(loaded.ok());
+  for (const auto& [share, rms_ppm] : {std::pair{0.2, 205.0}, std::pair{0.02, 887.0}}) {
+    const auto result = simplify(loaded->mesh, down_to(share, loaded->mesh));
+    REQUIRE(result.ok());
+    const auto distance = compare(loaded->mesh, result->mesh, {.samples = 100'000});
+    REQUIRE(distance.ok());
+    CHECK(distance->rms_m * 1e6 / distance->diagonal_m < rms_ppm);
+    CHECK(distance->p999_m <= honesty * result->error_m);
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
