@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// Based on: Li et al. 2019 (facet shift, one stack of reversible records).
+// Differs: planes, parts and points compete by the squared distance they cost per face gone, level by level of that
+// price; between two shifts points slide within their planes, which costs nothing. Few faces ever tilt: the price for
+// leaving a plane's direction is high, and asked only when nothing cheaper is left.
+#include <lodestone/facet_shift.h>
+
+#include <algorithm>
+#include <queue>
+
+#include "facets/facet_mesh.h"
+#include "facets/judge.h"
+#include "facets/parts.h"
+#include "facets/plan.h"
+#include "progressive/values.h"
+
+namespace lodestone {
+namespace facets {
+namespace {
+
+constexpr double first_price = 1e-10;  // m^4 a face
+constexpr double price_step = 4.0;
+constexpr double last_share = 0.02;  // of (area * diagonal^2): what the whole building would cost
+constexpr std::uint32_t rounds_per_price = 4;
+constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
+constexpr std::size_t few_neighbours = 24;    // with more it is looked at again only when the others are done
+constexpr double most_gone = 4.0;             // faces that a slide takes; a few take more
+
+class Builder {
+ public:
+  Builder(const Mesh& source, const FacetShiftOptions& options, const Context& context)
+      : options_(options),
+        context_(context),
+        log_(progressive::value_words(source.vertices)),
+        mesh_(make_facet_mesh(source, options.tolerance, degenerate_)),
+        moved_(mesh_),
+        planner_(mesh_) {}
+
+  progressive::EditLog run(FacetShiftReport& report);
+
+ private:
+  struct Entry {
+    double key = 0.0;
+    std::uint32_t point = none, onto = none, version = 0;
+    // Cheapest first, then by id.
+    bool operator<(const Entry& b) const { return key != b.key ? key > b.key : point > b.point; }
+  };
+
+  void drop_degenerate();
+  void offer(std::uint32_t point);
+  bool slide_points(double price);
+  bool shift_planes(double price);
+  bool vanish_parts(double price);
+  void offer_around(std::uint32_t point);
+  bool offer_later();
+  [[nodiscard]] bool done() const { return mesh_.live_faces <= options_.target_triangles || context_.cancelled(); }
+
+  const FacetShiftOptions& options_;
+  const Context& context_;
+  progressive::EditLog log_;
+  std::vector<FaceId> degenerate_;
+  FacetMesh mesh_;
+  Moved moved_;
+  Planner planner_;
+  std::priority_queue<Entry> queue_;
+  std::vector<std::uint32_t> later_;  // points to be looked at again
+  FacetShiftReport report_;
+};
+
+void Builder::drop_degenerate() {
+  for (const FaceId f : degenerate_) {
+    log_.begin(0.0F);
+    log_.remove_face(f);
+    log_.end();
+  }
+}
+
+// The cheapest way for the point to slide onto a neighbour.
+void Builder::offer(std::uint32_t point) {
+  const auto& faces = mesh_.faces_of[point];
+  if (faces.empty() || faces.size() > most_neighbours) return;
+  Entry best{std::numeric_limits<double>::infinity(), point, none, mesh_.version[point]};
+  double best_length = 0.0;
+  std::vector<std::uint32_t> tried;
+  for (const FaceId f : faces) {
+    for (const std::uint32_t q : mesh_.faces[f].point) {
+      if (q == point || std::find(tried.begin(), tried.end(), q) != tried.end()) continue;
+      tried.push_back(q);
+      const Verdict v = judge_slide(mesh_, moved_, {point, q, mesh_.place[q]}, most_gone * best.key);
+      if (!v.allowed || v.error_m > options_.max_error_m || v.key() > best.key) continue;
+      const double length = glm::length(mesh_.at(q) - mesh_.at(point));
+      if (v.key() == best.key && length >= best_length) continue;
+      best.key = v.key();
+      best.onto = q;
+      best_length = length;
+    }
+  }
+  if (best.onto != none) queue_.push(best);
+}
+
+void Builder::offer_around(std::uint32_t point) {
+  std::vector<std::uint32_t> around{point};
+  for (const FaceId f : mesh_.faces_of[point])
+    around.insert(around.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const std::uint32_t p : around) {
+    if (mesh_.faces_of[p].size() <= few_neighbours) {
+      offer(p);
+    } else {
+      later_.push_back(p);
+    }
+  }
+}
+
+bool Builder::offer_later() {
+  if (later_.empty()) return false;
+  std::sort(later_.begin(), later_.end());
+  later_.erase(std::unique(later_.begin(), later_.end()), later_.end());
+  for (const std::uint32_t p : later_) offer(p);
+  later_.clear();
+  return true;
+}
+
+bool Builder::slide_points(double price) {
+  bool any = false;
+  while (!done()) {
+    if (queue_.empty() || queue_.top().key > price) {
+      if (!offer_later()) break;
+      continue;
+    }
+    const Entry e = queue_.top();
+    queue_.pop();
+    if (e.version != mesh_.version[e.point]) continue;
+    const Move move{e.point, e.onto, mesh_.place[e.onto]};
+    const Verdict v = judge_slide(mesh_, moved_, move, std::numeric_limits<double>::infinity());
+    if (!v.allowed || v.key() > price) {
+      offer(e.point);
+      continue;
+    }
+    moved_.set({&move, 1});
+    apply(mesh_, moved_, v.error_m, log_);
+    ++(v.tilts ? report_.tilting_collapses : report_.points_merged);
+    offer_around(e.onto);
+    any = true;
+  }
+  return any;
+}
+
+bool Builder::shift_planes(double price) {
+  struct Offer {
+    double key;
+    std::uint32_t surface;
+    Direction direction;
+  };
+  std::vector<Offer> offers;
+  planner_.begin_round();
+  for (std::uint32_t s = 0; s < mesh_.surface_faces.size() && !context_.cancelled(); ++s) {
+    std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
+    if (mesh_.surface_faces[s].empty()) continue;
+    for (const Direction direction : {Direction::Inwards, Direction::Outwards}) {
+      const Plan plan = planner_.plan(s, direction);
+      if (plan.moves.empty()) continue;
+      const Verdict v = judge_shift(mesh_, moved_, plan.moves);
+      if (v.allowed && v.key() <= price && v.error_m <= options_.max_error_m) offers.push_back({v.key(), s, direction});
+    }
+  }
+  std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) { return a.key < b.key; });
+  bool any = false;
+  for (const Offer& offer : offers) {
+    if (done()) break;
+    planner_.begin_round();  // others may have moved meanwhile: plan anew
+    const Plan plan = planner_.plan(offer.surface, offer.direction);
+    if (plan.moves.empty()) continue;
+    const Verdict v = judge_shift(mesh_, moved_, plan.moves);
+    if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m) continue;
+    apply(mesh_, moved_, v.error_m, log_);
+    ++report_.shifts;
+    any = true;
+    for (const Move& m : plan.moves) offer_around(m.onto == none ? m.point : m.onto);
+  }
+  return any;
+}
+
+bool Builder::vanish_parts(double price) {
+  bool any = false;
+  // Farther than this no part of a face or more can be within the price.
+  const double limit = std::min(options_.max_error_m, std::sqrt(price / 1e-3));
+  std::vector<std::uint8_t> leant_upon(mesh_.point_count(), 0);
+  for (const Part& part : find_parts(mesh_, limit)) {
+    if (done()) break;
+    if (part.cost > price * static_cast<double>(part.faces.size())) break;
+    if (part.error_m > options_.max_error_m) continue;
+    if (mesh_.live_faces - part.faces.size() < 1) continue;
+    const bool holds = std::any_of(part.faces.begin(), part.faces.end(), [&](FaceId f) {
+      const auto& p = mesh_.faces[f].point;
+      return leant_upon[p[0]] != 0 || leant_upon[p[1]] != 0 || leant_upon[p[2]] != 0;
+    });
+    const bool held = std::all_of(part.support.begin(), part.support.end(),
+                                  [&](std::uint32_t p) { return !mesh_.faces_of[p].empty(); });
+    if (holds || !held) continue;
+    for (const std::uint32_t p : part.support) {
+      leant_upon[p] = 1;
+      mesh_.deviation_m[p] = std::max(mesh_.deviation_m[p], static_cast<float>(part.error_m));
+    }
+    vanish(mesh_, part.faces, part.error_m, log_);
+    ++report_.parts_vanished;
+    any = true;
+  }
+  return any;
+}
+
+progressive::EditLog Builder::run(FacetShiftReport& report) {
+  for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) {
+    ++report_.surfaces;
+    report_.walls += s.kind == SurfaceClass::Wall ? 1 : 0;
+    report_.roofs += s.kind == SurfaceClass::Roof ? 1 : 0;
+    report_.openings += s.kind == SurfaceClass::Opening ? 1 : 0;
+  }
+  drop_degenerate();
+  for (std::uint32_t p = 0; p < mesh_.point_count() && !context_.cancelled(); ++p) offer(p);
+  double area = 0.0;
+  for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) area += s.area_m2;
+  const double diagonal = bounds(*mesh_.source).diagonal_m();
+  const double last_price = last_share * area * diagonal * diagonal;
+  for (double price = first_price; price <= last_price && !done(); price *= price_step) {
+    bool any = true;
+    for (std::uint32_t round = 0; round < rounds_per_price && any && !done(); ++round) {
+      slide_points(price);
+      any = shift_planes(price);
+      any = vanish_parts(price) || any;
+    }
+    context_.report("facet shift",
+                    1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
+  }
+  if (mesh_.live_faces > options_.target_triangles && options_.target_triangles != 0) {
+    report_.sentence = "nothing more can go without tearing the block";
+  }
+  report = report_;
+  return std::move(log_);
+}
+
+}  // namespace
+}  // namespace facets
+
+Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShiftOptions& options,
+                                              const Context& context) {
+  if (Status status = validate(mesh); !status.ok()) return status.error();
+  FacetShiftResult result;
+  facets::Builder builder{mesh, options, context};
+  progressive::EditLog log = builder.run(result.report);
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
+  auto model = ProgressiveModel::from_data(progressive::record(mesh, std::move(log), "facet-shift"));
+  if (!model.ok()) return model.error();
+  result.model = std::move(model).value();
+  return result;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "facets/judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/distance.h"
+
+namespace lodestone::facets {
+namespace {
+
+constexpr double sliver_m = 5e-4;        // a flatter face has no direction worth keeping
+constexpr double tilt_sine = 0.0075;     // 0.43 degrees are no tilt
+constexpr double detail_area_m2 = 0.25;  // planes smaller than this may tilt at a low price
+constexpr double detail_arm_m = 0.3;     // a tilt counts like so much distance times its sine
+constexpr double plane_arm_m = 10.0;
+constexpr double outline_weight = 0.5;  // of a material's outline, beside that of a hole
+constexpr double flip_cosine = 0.2;
+
+// The integral of the squared distance over a triangle whose corners are so far from its old plane, over its area.
+double mean_square(const std::array<double, 3>& d) {
+  return (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[0] * d[1] + d[1] * d[2] + d[2] * d[0]) / 6.0;
+}
+
+// Adds what happens to one face that keeps three corners; false if it must not.
+bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Verdict& verdict) {
+  const auto& p = face.point;
+  const std::array<glm::dvec3, 3> to{moved.at(p[0]), moved.at(p[1]), moved.at(p[2])};
+  const glm::dvec3 after = glm::cross(to[1] - to[0], to[2] - to[0]);
+  const double length = glm::length(after);
+  const double height = height_m(to[0], to[1], to[2]);
+  const double height_before = height_m(mesh.at(p[0]), mesh.at(p[1]), mesh.at(p[2]));
+  if (height > sliver_m && height_before > sliver_m) {
+    const glm::dvec3 before = mesh.area_vector(face);
+    if (glm::dot(before, after) < flip_cosine * glm::length(before) * length) return false;
+  }
+  std::array<double, 3> distance{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!moved.moves(p[k])) continue;
+    distance[k] = glm::dot(face.normal, to[k] - mesh.at(p[k]));
+    verdict.error_m = std::max(verdict.error_m, std::abs(distance[k]));
+  }
+  verdict.cost += 0.5 * length * mean_square(distance);
+  const double sine = glm::length(glm::cross(face.normal, after)) / std::max(length, 1e-30);
+  if (sine > tilt_sine && height > sliver_m) {
+    verdict.tilts = true;
+    const bool detail = mesh.surfaces.surfaces[face.surface].area_m2 < detail_area_m2;
+    const double arm = sine * (detail ? detail_arm_m : plane_arm_m);
+    verdict.cost += 0.5 * length * arm * arm;
+  }
+  return true;
+}
+
+// Edges at a point that are borders or where materials meet.
+struct Spoke {
+  std::uint32_t to = none;
+  std::uint32_t faces = 0;
+  MaterialId material = none;
+  bool mixed = false;
+};
+
+void find_spokes(const FacetMesh& mesh, std::uint32_t u, std::vector<Spoke>& spokes) {
+  spokes.clear();
+  for (const FaceId f : mesh.faces_of[u]) {
+    const MaterialId material = mesh.source->face_material(f);
+    for (const std::uint32_t p : mesh.faces[f].point) {
+      if (p != u) spokes.push_back({p, 1, material, false});
+    }
+  }
+  std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) { return a.to < b.to; });
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < spokes.size(); ++i) {
+    if (end > 0 && spokes[end - 1].to == spokes[i].to) {
+      ++spokes[end - 1].faces;
+      spokes[end - 1].mixed = spokes[end - 1].mixed || spokes[end - 1].material != spokes[i].material;
+    } else {
+      spokes[end++] = spokes[i];
+    }
+  }
+  spokes.resize(end);
+}
+
+// The faces around u and v must have no common neighbours but the third corners of the faces between them, or sheets
+// would stick together. Asked only where both are manifold.
+bool link_holds(const FacetMesh& mesh, const std::vector<Spoke>& spokes, std::uint32_t u, std::uint32_t v) {
+  std::uint32_t shared = 0;
+  for (const Spoke& s : spokes) {
+    if (s.faces > 2) return true;
+    if (s.to == v) shared = s.faces;
+  }
+  thread_local std::vector<Spoke> others;
+  find_spokes(mesh, v, others);
+  std::uint32_t common = 0;
+  auto at = spokes.begin();
+  for (const Spoke& s : others) {
+    if (s.faces > 2) return true;
+    while (at != spokes.end() && at->to < s.to) ++at;
+    if (at != spokes.end() && at->to == s.to && s.to != u) ++common;
+  }
+  if (spokes.size() == 3 && others.size() == 3 && shared == 2) return false;
+  return common == shared;
+}
+
+double segment_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  return std::sqrt(squared_distance_to_segment(p, a, b));
+}
+
+// How far the lines through u leave their place when u goes to v.
+void judge_lines(const FacetMesh& mesh, const std::vector<Spoke>& spokes, std::uint32_t u, std::uint32_t v,
+                 Verdict& verdict) {
+  const glm::dvec3 from = mesh.at(u);
+  const glm::dvec3 to = mesh.at(v);
+  double u_to_new = std::numeric_limits<double>::infinity();
+  double v_to_old = std::numeric_limits<double>::infinity();
+  double swept = 0.0;
+  bool any = false;
+  bool border = false;
+  for (const Spoke& s : spokes) {
+    if (s.faces != 1 && !s.mixed) continue;
+    any = true;
+    border = border || s.faces == 1;
+    if (s.to == v) {
+      v_to_old = 0.0;
+      continue;
+    }
+    const glm::dvec3 w = mesh.at(s.to);
+    u_to_new = std::min(u_to_new, segment_distance(from, w, to));
+    v_to_old = std::min(v_to_old, segment_distance(to, w, from));
+    swept += 0.5 * glm::length(glm::cross(w - from, to - from));
+  }
+  if (!any) return;
+  if (!std::isfinite(u_to_new)) u_to_new = glm::length(to - from);
+  const double e = std::max(u_to_new, v_to_old);
+  verdict.error_m = std::max(verdict.error_m, e);
+  verdict.cost += (border ? 1.0 : outline_weight) * swept * e * e / 3.0;
+}
+
+void add_deviation(const FacetMesh& mesh, std::span<const Move> moves, Verdict& verdict) {
+  double before = 0.0;
+  for (const Move& m : moves) before = std::max(before, double{mesh.deviation_m[m.point]});
+  verdict.error_m += before;
+}
+
+}  // namespace
+
+Verdict judge_slide(const FacetMesh& mesh, Moved& moved, const Move& move, double most_cost) {
+  Verdict verdict;
+  moved.set({&move, 1});
+  for (const FaceId f : moved.faces()) {
+    const Face& face = mesh.faces[f];
+    const auto& p = face.point;
+    if (p[0] == move.onto || p[1] == move.onto || p[2] == move.onto) {
+      ++verdict.faces_gone;
+      continue;
+    }
+    const double height = height_m(moved.at(p[0]), moved.at(p[1]), moved.at(p[2]));
+    if (height < line_height_m && height_m(mesh.at(p[0]), mesh.at(p[1]), mesh.at(p[2])) > sliver_m) return verdict;
+    if (!judge_face(mesh, moved, face, verdict) || verdict.cost > most_cost) return verdict;
+  }
+  thread_local std::vector<Spoke> spokes;
+  find_spokes(mesh, move.point, spokes);
+  judge_lines(mesh, spokes, move.point, move.onto, verdict);
+  add_deviation(mesh, {&move, 1}, verdict);
+  verdict.allowed =
+      verdict.faces_gone != 0 && verdict.cost <= most_cost && link_holds(mesh, spokes, move.point, move.onto);
+  return verdict;
+}
+
+Verdict judge_shift(const FacetMesh& mesh, Moved& moved, std::span<const Move> moves) {
+  Verdict verdict;
+  moved.set(moves);
+  for (const FaceId f : moved.faces()) {
+    const Face& face = mesh.faces[f];
+    const auto& p = face.point;
+    const bool gone = moved.point(p[0]) == moved.point(p[1]) || moved.point(p[1]) == moved.point(p[2]) ||
+                      moved.point(p[2]) == moved.point(p[0]) ||
+                      height_m(moved.at(p[0]), moved.at(p[1]), moved.at(p[2])) < line_height_m;
+    if (!gone) {
+      if (!judge_face(mesh, moved, face, verdict)) return verdict;
+      continue;
+    }
+    // Its points lie up to the way of its corners from what is left.
+    ++verdict.faces_gone;
+    double way = 0.0;
+    for (const std::uint32_t q : p) way = std::max(way, glm::length(moved.at(q) - mesh.at(q)));
+    verdict.cost += 0.5 * glm::length(mesh.area_vector(face)) * way * way / 3.0;
+    verdict.error_m = std::max(verdict.error_m, way);
+  }
+  add_deviation(mesh, moves, verdict);
+  verdict.allowed = verdict.faces_gone != 0;
+  return verdict;
+}
+
+}  // namespace lodestone::facets

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The 49 surveyed buildings, whole and damaged.
+#include <lodestone/facet_shift.h>
+#include <lodestone/formats.h>
+#include <lodestone/metrics.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "data.h"
+
+namespace lodestone {
+namespace {
+
+std::vector<std::filesystem::path> building_files(const std::filesystem::path& root) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& folder : std::filesystem::directory_iterator{root / "buildings"}) {
+    const auto file = folder.path() / (folder.path().filename().string() + ".obj");
+    if (std::filesystem::exists(file) && folder.path().filename() != "street_all") files.push_back(file);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST_CASE("all real buildings build exactly, and the richer ones keep their planes and their shape") {
+  LODESTONE_REQUIRE_DATA(root);
+  constexpr std::array<double, 4> ratios{0.5, 0.2, 0.1, 0.05};
+  std::array<double, 4> deviation_deg{};
+  std::array<double, 4> rms_ppm{};
+  std::uint32_t rich = 0;
+  for (const auto& file : building_files(root)) {
+    CAPTURE(file.string());
+    const auto loaded = read_mesh(file, {.textures = LoadTextures::Reference});
+    REQUIRE(loaded.ok());
+    const Mesh& source = loaded->mesh;
+    const auto built = build_by_facet_shift(source);
+    REQUIRE(built.ok());
+    const ModelReport report = validate(*built->model);
+    CHECK(report.fault.empty());
+    CHECK((report.exact && report.monotone && report.in_use_consistent));
+    CHECK(compare_with_source(*built->model, source).empty());
+    if (source.triangle_count() < 1000) continue;
+    ++rich;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      const auto wanted = static_cast<std::uint32_t>(ratios[i] * source.triangle_count());
+      const Mesh level = built->model->extract(built->model->level_of_triangles(wanted));
+      const auto distance = compare(source, level, {.samples = 20'000});
+      REQUIRE(distance.ok());
+      deviation_deg[i] += glm::degrees(distance->normal_deviation_rad);
+      rms_ppm[i] += 1e6 * distance->rms_m / distance->diagonal_m;
+    }
+  }
+  REQUIRE(rich == 30);
+  constexpr std::array<double, 4> most_deg{0.1, 0.15, 0.2, 0.5};
+  constexpr std::array<double, 4> most_ppm{200.0, 450.0, 972.0, 2341.0};
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    CAPTURE(ratios[i]);
+    CHECK(deviation_deg[i] / rich < most_deg[i]);
+    CHECK(rms_ppm[i] / rich < most_ppm[i]);
+  }
+}
+
+// Moves, turns, repeats and drops faces of a real building at random.
+void damage(Mesh& mesh, std::mt19937& random) {
+  const auto pick = [&](std::size_t count) { return std::uniform_int_distribution<std::size_t>{0, count - 1}(random); };
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t f = 3 * pick(mesh.triangle_count());
+    switch (pick(4)) {
+      case 0:
+        std::swap(mesh.indices[f], mesh.indices[f + 1]);
+        break;
+      case 1:
+        mesh.indices[f] = static_cast<VertexId>(pick(mesh.vertex_count()));
+        break;
+      case 2:
+        mesh.vertices.positions[mesh.indices[f]] += glm::vec3{0.0F, 0.0F, 3.0F};
+        break;
+      default:
+        mesh.indices[f + 1] = mesh.indices[f];
+        break;
+    }
+  }
+}
+
+TEST_CASE("a damaged building gives a valid model") {
+  LODESTONE_REQUIRE_DATA(root);
+  for (const char* id : {"4018208", "4018156", "4018106"}) {
+    const auto loaded =
+        read_mesh(root / "buildings" / id / (std::string{id} + ".obj"), {.textures = LoadTextures::Reference});
+    REQUIRE(loaded.ok());
+    for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+      CAPTURE(id, seed);
+      Mesh mesh = loaded->mesh;
+      std::mt19937 random{seed};
+      damage(mesh, random);
+      const auto built = build_by_facet_shift(mesh);
+      REQUIRE(built.ok());
+      const ModelReport report = validate(*built->model);
+      CHECK(report.fault.empty());
+      CHECK((report.exact && report.monotone && report.in_use_consistent));
+      CHECK(compare_with_source(*built->model, mesh).empty());
+      mesh.vertices.positions[0].x = std::numeric_limits<float>::quiet_NaN();
+      CHECK_FALSE(build_by_facet_shift(mesh).ok());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lodestone
