@@ -283,11 +283,12 @@ class RecordCodec : protected Replay<Space, Io> {
     std::array<std::uint32_t, 3> last{};
     for (std::uint32_t i = 0; i < merges.size(); ++i) {
       const VertexId slot = first + i;
-      const VertexId like = merges[i] < slot ? merges[i] : slot == 0 ? 0 : slot - 1;
+      // The first vertex of a model whose base is empty has no other to be like.
+      const Guess guess = slot == 0 ? Guess{} : Base::guess_like(merges[i] < slot ? merges[i] : slot - 1);
       std::uint32_t* words = Base::value(slot);
       store_.before_new(slot, words);
       const bool same = i > 0 && code_same(io, words, last);
-      code_new(io, EditValues, slot, Base::guess_like(like), !same);
+      code_new(io, EditValues, slot, guess, !same);
       std::copy_n(words, 3, last.begin());
     }
     for (std::size_t i = 0; i < moved.size(); ++i) {

@@ -389,7 +389,8 @@ class Model:
             same = i > 0 and self.c[SAME].get() != 0
             if same:
                 self.values[s][:3] = self.values[s - 1][:3]
-            self.value(EDIT, self.like(m if m < s else max(s - 1, 0)), self.values[s], not same)
+            like = self.like(m if m < s else s - 1) if s else Guess([0.0] * 3, [0.0] * 3, [0.0] * 2, 0, [0, 0])
+            self.value(EDIT, like, self.values[s], not same)
         for _ in range(nm):
             u = self.name(EDIT_MOVED, known)
             self.value(EDIT, self.like(u), self.values[u])
