@@ -79,7 +79,7 @@ Status Build::run(Session& session) {
   const double build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   session.keep(built);
   if (!built) return built.error();
-  if (!built->report.sentence.empty()) {
+  if (target_triangles_ > 0 && !built->report.target_reached) {
     session.keep({Warning{built->report.sentence, input_.file().string()}});
   }
   const ProgressiveModel& model = *built->model;

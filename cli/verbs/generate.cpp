@@ -12,7 +12,7 @@ class Generate final : public Verb {
   [[nodiscard]] std::string name() const override { return "generate"; }
   [[nodiscard]] std::string summary() const override { return "Make seeded sample data of any size"; }
   [[nodiscard]] std::string example() const override {
-    return "lodestone generate house --roof hip --triangles 50000 -o house.obj";
+    return "lodestone generate house --roof hip --triangles 20000 --texture-size 256 -o house.obj";
   }
   void declare(Arguments& arguments) override {
     arguments.choice("KIND", kind_, {"house", "street", "outcrop", "terrain"}, "What to make", Need::Required);

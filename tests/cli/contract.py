@@ -294,6 +294,7 @@ class Failures(Contract):
         self.assertIn("warning:", run("inspect", dirty).stderr)
         self.assertEqual(run("inspect", dirty, "--quiet").stderr, "")
         self.assertEqual(run("inspect", self.house, "--strict").returncode, 0)
+        self.assertEqual(run("build", self.house, "--strict", "-o", self.scratch / "a.lode").returncode, 0)
 
     def test_a_place_that_cannot_be_written_is_named(self):
         nowhere = self.scratch / "no" / "such" / "folder" / "a.ply"
