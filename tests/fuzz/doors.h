@@ -32,9 +32,9 @@ inline void demand_valid(const Result<LoadedMesh>& result) {
 }  // namespace lodestone::fuzz
 
 // A mesh door: one reader behind the checks of read_input. libFuzzer's entry point.
-#define LODESTONE_MESH_DOOR(name)                                                              \
-  extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {          \
-    using namespace lodestone;                                                                 \
-    fuzz::demand_valid(read_input(fuzz::input_of(data, size, name), fuzz::small_caps(), {}));  \
-    return 0;                                                                                  \
+#define LODESTONE_MESH_DOOR(name)                                                             \
+  extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {         \
+    using namespace lodestone;                                                                \
+    fuzz::demand_valid(read_input(fuzz::input_of(data, size, name), fuzz::small_caps(), {})); \
+    return 0;                                                                                 \
   }

@@ -18,8 +18,7 @@ std::optional<std::filesystem::path> data_root() {
 }
 
 std::filesystem::path scratch_folder(const std::string& name) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("lodestone-test-" + std::to_string(::getpid())) / name;
+  const auto folder = std::filesystem::temp_directory_path() / ("lodestone-test-" + std::to_string(::getpid())) / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

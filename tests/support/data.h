@@ -17,10 +17,10 @@ namespace lodestone::test {
 }  // namespace lodestone::test
 
 // First line of a test on real data: leaves it, visibly skipped (ctest matches the text), where the data is absent.
-#define LODESTONE_REQUIRE_DATA(root)                                                          \
-  const auto root##_optional = lodestone::test::data_root();                                  \
-  if (!root##_optional) {                                                                     \
-    WARN("SKIPPED: real data not found; set LODESTONE_DATA or place it at ../shared/data");   \
-    return;                                                                                   \
-  }                                                                                           \
+#define LODESTONE_REQUIRE_DATA(root)                                                        \
+  const auto root##_optional = lodestone::test::data_root();                                \
+  if (!root##_optional) {                                                                   \
+    WARN("SKIPPED: real data not found; set LODESTONE_DATA or place it at ../shared/data"); \
+    return;                                                                                 \
+  }                                                                                         \
   const std::filesystem::path root = *root##_optional

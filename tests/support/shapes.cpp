@@ -13,9 +13,7 @@ Mesh with_material(Mesh mesh) {
   return mesh;
 }
 
-void add_face(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
-  mesh.indices.insert(mesh.indices.end(), {a, b, c});
-}
+void add_face(Mesh& mesh, VertexId a, VertexId b, VertexId c) { mesh.indices.insert(mesh.indices.end(), {a, b, c}); }
 
 }  // namespace
 
@@ -134,7 +132,8 @@ Mesh seamed_grid(std::uint32_t nx, std::uint32_t ny) {
 Mesh fins(std::uint32_t fins) {
   Mesh mesh = with_material({});
   constexpr std::uint32_t steps = 8;
-  for (std::uint32_t z = 0; z <= steps; ++z) mesh.vertices.positions.emplace_back(0.0F, 0.0F, 0.25F * static_cast<float>(z));
+  for (std::uint32_t z = 0; z <= steps; ++z)
+    mesh.vertices.positions.emplace_back(0.0F, 0.0F, 0.25F * static_cast<float>(z));
   for (std::uint32_t i = 0; i < fins; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / fins;
     const VertexId first = mesh.vertex_count();
@@ -191,7 +190,8 @@ std::vector<NamedMesh> mesh_families() {
   Mesh duplicate = sphere(10, 14);
   const auto faces = duplicate.indices;
   duplicate.indices.insert(duplicate.indices.end(), faces.begin(), faces.begin() + 60);
-  for (std::size_t i = 60; i < 90; i += 3) duplicate.indices.insert(duplicate.indices.end(), {faces[i], faces[i + 2], faces[i + 1]});
+  for (std::size_t i = 60; i < 90; i += 3)
+    duplicate.indices.insert(duplicate.indices.end(), {faces[i], faces[i + 2], faces[i + 1]});
   all.push_back({"duplicate faces", duplicate});
   return all;
 }

@@ -65,9 +65,9 @@ struct LoadedMesh {
 [[nodiscard]] Status write_mesh(const Mesh& mesh, const std::filesystem::path& file, const Context& context = {});
 
 struct ModelWriteOptions {
-  /// Bits per coordinate of the longest side of the model's box, at most 20; 0 = lossless. On a grid normals get as many
-  /// bits per octahedral coordinate (8 to 12), uvs steps of 1/4096; records are reordered within windows of nearly equal
-  /// error, and every level's error grows by half the diagonal of a cell.
+  /// Bits per coordinate of the longest side of the model's box, at most 20; 0 = lossless. On a grid normals get as
+  /// many bits per octahedral coordinate (8 to 12), uvs steps of 1/4096; records are reordered within windows of nearly
+  /// equal error, and every level's error grows by half the diagonal of a cell.
   std::uint32_t quantize_bits = 0;
   /// Put textures into the file (else refer to them by path).
   bool embed_textures = true;
@@ -78,9 +78,9 @@ struct ModelReadOptions {
   std::uint64_t max_bytes = 0;
 };
 
-/// .lode files: docs/FILE_FORMAT.md. Any prefix of a file that holds the base is a usable, coarser model; a file that was
-/// cut short reads as one, with a warning. write_model() returns the bytes written; cost about 1 us a record and the size
-/// of the file in memory. read_model() checks every byte and every record.
+/// .lode files: docs/FILE_FORMAT.md. Any prefix of a file that holds the base is a usable, coarser model; a file that
+/// was cut short reads as one, with a warning. write_model() returns the bytes written; cost about 1 us a record and
+/// the size of the file in memory. read_model() checks every byte and every record.
 [[nodiscard]] Result<std::uint64_t> write_model(const ProgressiveModel& model, const std::filesystem::path& file,
                                                 const ModelWriteOptions& options = {}, const Context& context = {});
 [[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> read_model(const std::filesystem::path& file,

@@ -25,9 +25,7 @@ struct Context {
   /// Most bytes that out-of-core stages should hold; 0 = no limit.
   std::size_t max_memory_bytes = 0;
 
-  [[nodiscard]] bool cancelled() const noexcept {
-    return cancel != nullptr && cancel->load(std::memory_order_relaxed);
-  }
+  [[nodiscard]] bool cancelled() const noexcept { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
   void report(std::string_view stage, double fraction) const {
     if (progress) progress(stage, fraction);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// \file
-/// A progressive model of any mesh by edge collapse. Sources: Garland and Heckbert 1997 and 1998 (quadrics, attributes),
-/// Hoppe 1999 (wedge attributes, memoryless), Lindstrom and Turk 1998 (boundary cost). Works on dirty input: seams,
-/// several materials, non-manifold edges, duplicate and degenerate faces, many small parts.
+/// A progressive model of any mesh by edge collapse. Sources: Garland and Heckbert 1997 and 1998 (quadrics,
+/// attributes), Hoppe 1999 (wedge attributes, memoryless), Lindstrom and Turk 1998 (boundary cost). Works on dirty
+/// input: seams, several materials, non-manifold edges, duplicate and degenerate faces, many small parts.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace lodestone {
 
 /// Where the vertex that two collapse into is put.
 enum class Placement : std::uint8_t {
-  Optimal,   ///< minimum of the quadric, fallback on-edge, then end points; best shape
-  OnEdge,    ///< minimum along the edge
+  Optimal,  ///< minimum of the quadric, fallback on-edge, then end points; best shape
+  OnEdge,   ///< minimum along the edge
   Midpoint,
   EndPoint,  ///< the better end
   Subset,    ///< the end that stays, never moved: smallest records, fastest playback, vertices shared by all levels
@@ -74,7 +74,8 @@ struct EdgeCollapseResult {
 /// Builds the stack from the source (finest level, bit for bit) down to the target. The same bytes come out for any
 /// number of workers. Time about 0.6 us per source triangle, memory about 250 bytes per source vertex while building.
 /// Errors: BadData from validate(mesh), BadArgument, Cancelled.
-[[nodiscard]] Result<EdgeCollapseResult> build_by_edge_collapse(const Mesh& mesh, const EdgeCollapseOptions& options = {},
+[[nodiscard]] Result<EdgeCollapseResult> build_by_edge_collapse(const Mesh& mesh,
+                                                                const EdgeCollapseOptions& options = {},
                                                                 const Context& context = {});
 
 /// The same engine without records: the simplified mesh only.

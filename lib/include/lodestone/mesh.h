@@ -32,19 +32,19 @@ struct VertexArrays {
 /// An image used by materials: decoded pixels, or the encoded bytes of a file, or only a path. Shared, never changed
 /// once it is in a mesh, so copies of a mesh do not copy pixels.
 struct Texture {
-  std::string name;                                             ///< As the source calls it; unique in a mesh.
-  std::string path;                                             ///< File on disk, if there is one.
-  std::string mime_type;                                        ///< Of `encoded`: "image/jpeg", "image/png", ...
-  std::shared_ptr<const std::vector<std::uint8_t>> encoded;     ///< The file's bytes; null if not loaded.
-  std::shared_ptr<const Image> image;                           ///< Pixels; null if not decoded.
+  std::string name;                                          ///< As the source calls it; unique in a mesh.
+  std::string path;                                          ///< File on disk, if there is one.
+  std::string mime_type;                                     ///< Of `encoded`: "image/jpeg", "image/png", ...
+  std::shared_ptr<const std::vector<std::uint8_t>> encoded;  ///< The file's bytes; null if not loaded.
+  std::shared_ptr<const Image> image;                        ///< Pixels; null if not decoded.
 };
 
 /// Surface look. `base_color` multiplies the texture; alpha below 1 means glass: blended, drawn after opaque faces.
 struct Material {
   std::string name;
   glm::vec4 base_color{1.0F, 1.0F, 1.0F, 1.0F};  ///< sRGB, straight alpha, 0..1
-  std::uint32_t texture = none;                   ///< Index into Mesh::textures, or `none`.
-  float alpha_cutoff = 0.0F;                      ///< Texels with alpha below it are holes; 0 = no cut-out.
+  std::uint32_t texture = none;                  ///< Index into Mesh::textures, or `none`.
+  float alpha_cutoff = 0.0F;                     ///< Texels with alpha below it are holes; 0 = no cut-out.
   bool double_sided = true;
 
   [[nodiscard]] bool transparent() const noexcept { return base_color.a < 1.0F; }
@@ -52,15 +52,15 @@ struct Material {
 
 /// What a group of faces is: a wall, a window, a horizon. From CityGML, CityJSON, IFC, or OBJ group names.
 struct Feature {
-  std::string id;              ///< gml:id, GUID or group name; unique in a mesh where the source is.
-  std::string semantic_class;  ///< CityGML's word ("WallSurface", "Window", ...), empty if unknown.
-  std::uint32_t parent = none; ///< Feature that this one belongs to (a window's wall, a wall's building).
+  std::string id;               ///< gml:id, GUID or group name; unique in a mesh where the source is.
+  std::string semantic_class;   ///< CityGML's word ("WallSurface", "Window", ...), empty if unknown.
+  std::uint32_t parent = none;  ///< Feature that this one belongs to (a window's wall, a wall's building).
 };
 
 /// Everything but the geometry: it travels unchanged from a source through every level of a model.
 struct Surroundings {
-  glm::dvec3 origin{0.0};  ///< metres; a vertex's place in the world is origin + position
-  std::string crs;         ///< Coordinate reference system ("EPSG:25832"), empty if unknown.
+  glm::dvec3 origin{0.0};           ///< metres; a vertex's place in the world is origin + position
+  std::string crs;                  ///< Coordinate reference system ("EPSG:25832"), empty if unknown.
   std::vector<Material> materials;  ///< Never empty in a valid mesh that has faces.
   std::vector<Texture> textures;
   std::vector<Feature> features;
@@ -69,14 +69,12 @@ struct Surroundings {
 /// Triangles with wedges, materials and features.
 struct Mesh : Surroundings {
   VertexArrays vertices;
-  std::vector<VertexId> indices;            ///< 3 per triangle, counter-clockwise from outside
-  std::vector<MaterialId> face_materials;   ///< 1 per triangle, or empty: all of material 0
-  std::vector<FeatureId> face_features;     ///< 1 per triangle, or empty: no features; `none` allowed
+  std::vector<VertexId> indices;           ///< 3 per triangle, counter-clockwise from outside
+  std::vector<MaterialId> face_materials;  ///< 1 per triangle, or empty: all of material 0
+  std::vector<FeatureId> face_features;    ///< 1 per triangle, or empty: no features; `none` allowed
 
   [[nodiscard]] std::uint32_t vertex_count() const noexcept { return vertices.size(); }
-  [[nodiscard]] std::uint32_t triangle_count() const noexcept {
-    return static_cast<std::uint32_t>(indices.size() / 3);
-  }
+  [[nodiscard]] std::uint32_t triangle_count() const noexcept { return static_cast<std::uint32_t>(indices.size() / 3); }
   [[nodiscard]] MaterialId face_material(FaceId f) const noexcept {
     return face_materials.empty() ? 0 : face_materials[f];
   }

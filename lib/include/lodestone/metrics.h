@@ -28,12 +28,12 @@ struct Distances {
 
 struct MeshDistance {
   Distances a_to_b, b_to_a;
-  double hausdorff_m = 0.0;          ///< larger maximum of the two sides (vertices included)
-  double mean_m = 0.0;               ///< mean of the two sides
-  double rms_m = 0.0;                ///< root of the mean of the two mean squares
-  double p999_m = 0.0;               ///< larger of the two
-  double diagonal_m = 0.0;           ///< of a's bounds
-  double normal_deviation_rad = 0.0; ///< see normal_deviation_rad()
+  double hausdorff_m = 0.0;           ///< larger maximum of the two sides (vertices included)
+  double mean_m = 0.0;                ///< mean of the two sides
+  double rms_m = 0.0;                 ///< root of the mean of the two mean squares
+  double p999_m = 0.0;                ///< larger of the two
+  double diagonal_m = 0.0;            ///< of a's bounds
+  double normal_deviation_rad = 0.0;  ///< see normal_deviation_rad()
 };
 
 /// Two-sided distance by sampling plus vertices; origins are taken into account. O((samples + size) log size).
@@ -46,7 +46,8 @@ struct MeshDistance {
 /// face if none does); radians. 0 means that every face lies parallel to a plane that the source has there.
 [[nodiscard]] double normal_deviation_rad(const Mesh& a, const Mesh& b, const Context& context = {});
 
-/// Root mean square difference of two pictures of one size over RGB, 0..255; with `mask` (one byte per pixel, 0 = skip).
+/// Root mean square difference of two pictures of one size over RGB, 0..255; with `mask` (one byte per pixel, 0 =
+/// skip).
 [[nodiscard]] double image_rms(const Image& a, const Image& b, std::span<const std::uint8_t> mask = {});
 
 /// Largest mean absolute RGB difference (0..255) in any 16 x 16 block (blocks at multiples of 16, cut at the border).

@@ -45,7 +45,8 @@ class TriangleBvh {
     return best;
   }
 
-  // Nearest triangle among those for which wanted(face) holds and that lie nearer than `limit`; face `none` if there is none.
+  // Nearest triangle among those for which wanted(face) holds and that lie nearer than `limit`; face `none` if there is
+  // none.
   template <class Wanted>
   [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted) const {
     Nearest best;
