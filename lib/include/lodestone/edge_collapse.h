@@ -72,7 +72,8 @@ struct EdgeCollapseResult {
 };
 
 /// Builds the stack from the source (finest level, bit for bit) down to the target. The same bytes come out for any
-/// number of workers. Time about 0.6 us per source triangle, memory about 250 bytes per source vertex while building.
+/// number of workers. Three times the error of a level bounds the 99.9th percentile of its sampled two-sided distance
+/// from the source. Time about 1.2 us per source triangle, memory about 400 bytes per source vertex while building.
 /// Errors: BadData from validate(mesh), BadArgument, Cancelled.
 [[nodiscard]] Result<EdgeCollapseResult> build_by_edge_collapse(const Mesh& mesh,
                                                                 const EdgeCollapseOptions& options = {},

@@ -159,8 +159,15 @@ std::uint32_t Engine::flush() {
 
 bool Engine::pass(double share) {
   compact(mesh_, context_);
-  const double lines = soup_ ? soup_line_weight : line_weight;
-  const std::vector<Symmetric3> quadrics = sum_quadrics(mesh_, {source_, options_, looks_matter_, lines}, context_);
+  double lines = soup_ ? soup_line_weight : line_weight;
+  std::vector<Symmetric3> quadrics = sum_quadrics(mesh_, {source_, options_, looks_matter_, lines}, context_);
+  if (pass_ == 0 &&
+      std::any_of(mesh_.flags.begin(), mesh_.flags.end(), [](std::uint8_t f) { return (f & point_complex) != 0; })) {
+    soup_ = true;
+    loose_ = true;  // contacts come and go there anyway
+    lines = soup_line_weight;
+    quadrics = sum_quadrics(mesh_, {source_, options_, looks_matter_, lines}, context_);
+  }
   const Candidates candidates = find_candidates(mesh_, quadrics, options_.placement, share, context_);
   if (context_.cancelled() || candidates.edges.empty()) return false;
   PassState state{mesh_, source_, options_, diagonal_m_, lines, 0.0, looks_matter_, loose_, relaxed_, {}, {}};
@@ -230,10 +237,6 @@ CollapseReport Engine::run() {
   mesh_ = std::move(start.mesh);
   diagonal_m_ = bounds(source_).diagonal_m();
   looks_matter_ = options_.attributes == Attributes::All && (mesh_.has_seams() || !source_.face_materials.empty());
-  compact(mesh_, context_);
-  static_cast<void>(sum_quadrics(mesh_, {source_, options_, false, 1.0}, context_));
-  soup_ = std::any_of(mesh_.flags.begin(), mesh_.flags.end(), [](std::uint8_t f) { return (f & point_complex) != 0; });
-  loose_ = soup_;  // contacts come and go there anyway
   drop_degenerate(start.degenerate);
   double share = first_share;
   const double total = static_cast<double>(source_.triangle_count());
