@@ -198,7 +198,7 @@ Status watch(pid_t child, const Input& input, const Context& context) {
   const auto limit_s = std::chrono::seconds{60 + static_cast<long>(input.size() >> 20)};
   const std::uint64_t before = resident_bytes(::getpid());
   const std::uint64_t limit_bytes =
-      context.max_memory_bytes > 0 ? context.max_memory_bytes : (4ULL << 30) + 64 * input.size();
+      context.max_memory_bytes > 0 ? context.max_memory_bytes : (1ULL << 30) + 64 * input.size();
   const auto start = Clock::now();
   useconds_t pause_us = 200;
   for (;;) {
