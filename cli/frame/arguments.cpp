@@ -66,6 +66,11 @@ void Arguments::choice(const std::string& names, std::string& value, const std::
   if (!value.empty()) option->default_str(value);
 }
 
+void Arguments::text(const std::string& names, std::optional<std::string>& value, const std::string& help) {
+  add(
+      app_, names, value, [](const std::string& word) -> Result<std::string> { return word; }, "TEXT", help);
+}
+
 void Arguments::flag(const std::string& names, bool& value, const std::string& help) {
   app_.add_flag(names, value, help);
 }

@@ -29,6 +29,7 @@ class Arguments {
   void file(const std::string& names, std::filesystem::path& value, const std::string& help, Need need);
   void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,
               const std::string& help, Need need = Need::Optional);
+  void text(const std::string& names, std::optional<std::string>& value, const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
 
   void count(const std::string& names, std::uint32_t& value, std::uint32_t min, std::uint32_t max,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/edge_collapse.h>
+#include <lodestone/facet_shift.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "mesh_input.h"
 #include "verbs.h"
@@ -19,7 +21,8 @@ class Build final : public Verb {
 
  private:
   [[nodiscard]] EdgeCollapseOptions options() const;
-  [[nodiscard]] Status check_method(Session& session) const;
+  [[nodiscard]] std::string choose_method(const Mesh& source, Session& session) const;
+  [[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> build(const Mesh& source, Session& session) const;
 
   MeshInput input_;
   std::filesystem::path output_;
@@ -60,29 +63,47 @@ EdgeCollapseOptions Build::options() const {
   return options;
 }
 
-Status Build::check_method(Session& session) const {
-  if (method_ == "facet-shift") {
-    return Error{ErrorCode::BadArgument, "this version cannot build by facet-shift, use --method edge-collapse", ""};
+// Buildings are planar to 80 % and more, scans and sculpture to less than 20 %.
+constexpr double least_planar_share = 0.6;
+
+std::string Build::choose_method(const Mesh& source, Session& session) const {
+  if (method_ != "auto") return method_;
+  const double share = planar_area_share(source);
+  std::string method = share >= least_planar_share ? "facet-shift" : "edge-collapse";
+  session.remark("method: " + method + ", because " + std::to_string(std::lround(100.0 * share)) +
+                 " % of the area lies in planes");
+  return method;
+}
+
+Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source, Session& session) const {
+  const auto keep = [&](auto& built) -> Result<std::shared_ptr<const ProgressiveModel>> {
+    session.keep(built);
+    if (!built) return built.error();
+    if (target_triangles_ > 0 && built->model->info(0).triangles > target_triangles_) {
+      session.keep({Warning{built->report.sentence, input_.file().string()}});
+    }
+    return built->model;
+  };
+  if (choose_method(source, session) == "facet-shift") {
+    FacetShiftOptions options{.target_triangles = target_triangles_};
+    if (max_error_m_) options.max_error_m = *max_error_m_;
+    auto built = build_by_facet_shift(source, options, session.context());
+    return keep(built);
   }
-  if (method_ == "auto") session.remark("method: edge-collapse");
-  return Done{};
+  auto built = build_by_edge_collapse(source, options(), session.context());
+  return keep(built);
 }
 
 Status Build::run(Session& session) {
-  if (Status status = check_method(session); !status) return status;
   auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   const Mesh source = std::move(loaded->mesh);
 
   const auto start = std::chrono::steady_clock::now();
-  auto built = build_by_edge_collapse(source, options(), session.context());
+  const auto built = build(source, session);
   const double build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  session.keep(built);
   if (!built) return built.error();
-  if (target_triangles_ > 0 && !built->report.target_reached) {
-    session.keep({Warning{built->report.sentence, input_.file().string()}});
-  }
-  const ProgressiveModel& model = *built->model;
+  const ProgressiveModel& model = **built;
   auto bytes = write_model(model, output_, {.quantize_bits = quantize_bits_, .embed_textures = !reference_textures_},
                            session.context());
   session.keep(bytes);

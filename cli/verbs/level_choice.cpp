@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "level_choice.h"
 
+#include <charconv>
 #include <cmath>
 
 namespace lodestone::cli {
@@ -9,7 +10,7 @@ void LevelChoice::declare(Arguments& arguments) {
   arguments.count("--triangles", triangles_, 0, none, "The finest level with at most so many triangles");
   arguments.number("--ratio", ratio_, 0.0, 1.0, "The same as a share of the source's triangles");
   arguments.length_m("--error", error_m_, "The coarsest level that deviates by at most this");
-  arguments.count("--level", level_, 0, none, "This level; 0 is the base");
+  arguments.text("--level", level_, "This level, 0 is the base; or its name: lod3, lod2, lod1, block");
 }
 
 int LevelChoice::ways() const noexcept {
@@ -22,11 +23,12 @@ Result<Level> LevelChoice::in(const ProgressiveModel& model) const {
     return model.level_of_triangles(static_cast<std::uint32_t>(std::floor(*ratio_ * model.face_slot_count())));
   }
   if (error_m_) return model.level_of_error(*error_m_);
-  if (*level_ <= model.record_count()) return Level{*level_};
-  return Error{
-      ErrorCode::BadArgument,
-      "--level " + std::to_string(*level_) + " is not there, the finest is " + std::to_string(model.record_count()),
-      ""};
+  Level level = 0;
+  const auto [end, fault] = std::from_chars(level_->data(), level_->data() + level_->size(), level);
+  if (end != level_->data() + level_->size() || level_->empty()) return model.level_of_name(*level_);
+  if (fault == std::errc{} && level <= model.record_count()) return level;
+  return Error{ErrorCode::BadArgument,
+               "--level " + *level_ + " is not there, the finest is " + std::to_string(model.record_count()), ""};
 }
 
 }  // namespace lodestone::cli

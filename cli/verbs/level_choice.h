@@ -2,6 +2,9 @@
 // The ways to name one level of a model on the command line.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include <lodestone/progressive_model.h>
 
 #include "frame/verb.h"
@@ -21,7 +24,7 @@ class LevelChoice {
   std::optional<std::uint32_t> triangles_;
   std::optional<double> ratio_;
   std::optional<double> error_m_;
-  std::optional<std::uint32_t> level_;
+  std::optional<std::string> level_;
 };
 
 }  // namespace lodestone::cli

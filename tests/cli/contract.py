@@ -249,15 +249,21 @@ class Failures(Contract):
         self.fails(1, "generate", "castle", "-o", self.scratch / "a.obj")
         self.fails(1, "generate", "terrain", "--roof", "hip", "-o", self.scratch / "a.obj")
 
-    def test_what_this_version_cannot_do_is_said(self):
-        line = self.fails(1, "build", self.house, "--method", "facet-shift", "-o", self.scratch / "a.lode")
-        self.assertIn("edge-collapse", line)
-        self.assertEqual(list(self.scratch.iterdir()), [])
-
     def test_automatic_choices_are_said(self):
         done = run("build", self.house, "-o", self.scratch / "a.lode")
-        self.assertIn("edge-collapse", done.stderr)
-        self.assertEqual(self.json("build", self.house, "-o", self.scratch / "a.lode")["method"], "edge-collapse")
+        self.assertIn("facet-shift, because", done.stderr)
+        self.assertEqual(self.json("build", self.house, "-o", self.scratch / "a.lode")["method"], "facet-shift")
+        for method in ("facet-shift", "edge-collapse"):
+            built = self.json("build", self.house, "--method", method, "-o", self.scratch / "a.lode")
+            self.assertEqual(built["method"], method)
+
+    def test_levels_of_buildings_have_names(self):
+        self.json("build", self.house, "--method", "facet-shift", "-o", self.scratch / "a.lode")
+        triangles = [self.json("extract", self.scratch / "a.lode", "--level", name, "-o", self.scratch / "a.obj")["triangles"]
+                     for name in ("lod3", "lod2", "lod1", "block")]
+        self.assertEqual(triangles, sorted(triangles, reverse=True))
+        self.assertIn("lod3", self.fails(1, "extract", self.scratch / "a.lode", "--level", "attic",
+                                         "-o", self.scratch / "b.obj"))
 
     def test_missing_and_bad_files_end_with_2_and_name_the_file(self):
         missing = self.scratch / "missing.obj"

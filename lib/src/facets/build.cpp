@@ -20,7 +20,7 @@ namespace {
 
 constexpr double first_price = 1e-10;  // m^4 a face
 constexpr double price_step = 4.0;
-constexpr double last_share = 0.02;  // of (area * diagonal^2): what the whole building would cost
+constexpr double last_share = 1e-4;  // of (area * diagonal^2): beyond it the block itself would go
 constexpr std::uint32_t rounds_per_price = 4;
 constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
 constexpr std::size_t few_neighbours = 24;    // with more it is looked at again only when the others are done
@@ -240,6 +240,17 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   return std::move(log_);
 }
 
+// The coarsest levels within the positional accuracy that CityGML 2.0 asks of its LoD3, LoD2 and LoD1.
+void name_levels(ModelData& data) {
+  const auto coarsest = [&](float error_m) {
+    for (const ErrorStep& step : data.errors) {
+      if (step.error_m <= error_m) return step.level;
+    }
+    return static_cast<Level>(data.shapes.size());
+  };
+  data.named_levels = {{"lod3", coarsest(0.5F)}, {"lod2", coarsest(2.0F)}, {"lod1", coarsest(5.0F)}, {"block", 0}};
+}
+
 }  // namespace
 }  // namespace facets
 
@@ -250,7 +261,9 @@ Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShift
   facets::Builder builder{mesh, options, context};
   progressive::EditLog log = builder.run(result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
-  auto model = ProgressiveModel::from_data(progressive::record(mesh, std::move(log), "facet-shift"));
+  ModelData data = progressive::record(mesh, std::move(log), "facet-shift");
+  facets::name_levels(data);
+  auto model = ProgressiveModel::from_data(std::move(data));
   if (!model.ok()) return model.error();
   result.model = std::move(model).value();
   return result;

@@ -13,8 +13,9 @@ constexpr double sliver_m = 5e-4;        // a flatter face has no direction wort
 constexpr double tilt_sine = 0.0075;     // 0.43 degrees are no tilt
 constexpr double detail_area_m2 = 0.25;  // planes smaller than this may tilt at a low price
 constexpr double detail_arm_m = 0.3;     // a tilt counts like so much distance times its sine
-constexpr double plane_arm_m = 10.0;
-constexpr double outline_weight = 0.5;  // of a material's outline, beside that of a hole
+constexpr double plane_arm_m = 3.0;
+constexpr double outline_weight = 0.2;  // of a material's outline, beside that of a hole
+constexpr double side_weight = 0.6;     // of a face that shrinks to nothing: its mean squared way over the largest
 constexpr double flip_cosine = 0.2;
 
 // The integral of the squared distance over a triangle whose corners are so far from its old plane, over its area.
@@ -183,7 +184,7 @@ Verdict judge_shift(const FacetMesh& mesh, Moved& moved, std::span<const Move> m
     ++verdict.faces_gone;
     double way = 0.0;
     for (const std::uint32_t q : p) way = std::max(way, glm::length(moved.at(q) - mesh.at(q)));
-    verdict.cost += 0.5 * glm::length(mesh.area_vector(face)) * way * way / 3.0;
+    verdict.cost += 0.5 * glm::length(mesh.area_vector(face)) * way * way * side_weight;
     verdict.error_m = std::max(verdict.error_m, way);
   }
   add_deviation(mesh, moves, verdict);
