@@ -61,13 +61,12 @@ class Editor {
   }
 
  private:
-  // Which faces die: no area left, or on top of another one.
+  // Which faces die: two corners became one, or on top of another one. A face with three
+  // corners in a line stays: it ties its neighbours together until one of the corners slides onto another.
   void sort_faces() {
     for (const FaceId f : moved_.faces()) {
-      const auto& p = mesh_.faces[f].point;
       const Triple q = after(f);
-      const bool flat = q[0] == q[1] || q[1] == q[2] || q[2] == q[0] ||
-                        height_m(moved_.at(p[0]), moved_.at(p[1]), moved_.at(p[2])) < line_height_m;
+      const bool flat = q[0] == q[1] || q[1] == q[2] || q[2] == q[0];
       const bool twin = !flat && std::any_of(alive_.begin(), alive_.end(), [&](FaceId g) { return same(after(g), q); });
       if (flat || twin) {
         dead_.push_back(f);
@@ -88,10 +87,11 @@ class Editor {
     const Triple& p = mesh_.faces[f].point;
     return {moved_.point(p[0]), moved_.point(p[1]), moved_.point(p[2])};
   }
-  static bool same(Triple a, Triple b) {
-    std::sort(a.begin(), a.end());
-    std::sort(b.begin(), b.end());
-    return a == b;
+  // The same corners, turning the same way: the other way it is the back of a thin sheet, and both are needed to keep
+  // a closed part closed.
+  static bool same(const Triple& a, const Triple& b) {
+    return (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) || (a[0] == b[1] && a[1] == b[2] && a[2] == b[0]) ||
+           (a[0] == b[2] && a[1] == b[0] && a[2] == b[1]);
   }
 
   void find_heirs() {
@@ -285,6 +285,7 @@ FacetMesh make_facet_mesh(const Mesh& source, const SurfaceTolerance& tolerance,
   mesh.values = source.vertices;
   mesh.uses.assign(source.vertex_count(), 0);
   mesh.faces.resize(source.triangle_count());
+  mesh.material_area_m2.assign(source.materials.size(), 0.0);
   for (FaceId f = 0; f < source.triangle_count(); ++f) {
     Face& face = mesh.faces[f];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -297,6 +298,7 @@ FacetMesh make_facet_mesh(const Mesh& source, const SurfaceTolerance& tolerance,
       continue;
     }
     face.live = true;
+    mesh.material_area_m2[source.face_material(f)] += 0.5 * glm::length(mesh.area_vector(face));
     ++mesh.live_faces;
     face.normal = glm::normalize(mesh.area_vector(face));
     mesh.surface_faces[face.surface].push_back(f);

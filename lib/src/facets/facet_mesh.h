@@ -40,6 +40,7 @@ struct FacetMesh {
   std::vector<std::vector<FaceId>> surface_faces;  // may hold dead ones
   VertexArrays values;                             // current
   std::vector<std::uint32_t> uses;                 // per vertex: live corners that name it
+  std::vector<double> material_area_m2;            // of the source
   std::uint32_t live_faces = 0;
 
   [[nodiscard]] std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(place.size()); }
@@ -85,7 +86,8 @@ inline constexpr double line_height_m = 1e-4;
 
 [[nodiscard]] double height_m(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
-// Does the moves and logs them as one record. Faces that lose their area go; of two that come to lie on each other one
+// Does the moves and logs them as one record. Faces between points that met go; of two that come to lie on each other
+// and turn the same way one
 // goes. Vertices keep the texture of the plane they lie in.
 void apply(FacetMesh& mesh, Moved& moved, double error_m, progressive::EditLog& log);
 

@@ -15,6 +15,7 @@ constexpr double detail_area_m2 = 0.25;  // planes smaller than this may tilt at
 constexpr double detail_arm_m = 0.3;     // a tilt counts like so much distance times its sine
 constexpr double plane_arm_m = 3.0;
 constexpr double outline_weight = 0.2;  // of a material's outline, beside that of a hole
+constexpr double growth_weight = 4.0;   // where a hole or the rarer material grows: windows shrink, walls do not
 constexpr double side_weight = 0.6;     // of a face that shrinks to nothing: its mean squared way over the largest
 constexpr double flip_cosine = 0.2;
 
@@ -106,9 +107,30 @@ double segment_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dve
   return std::sqrt(squared_distance_to_segment(p, a, b));
 }
 
+// Whether the faces around lose area (a hole grows), or the material that is rarer in the whole building gains area on
+// the other ones (a window grows).
+bool goes_the_wrong_way(const FacetMesh& mesh, const Moved& moved, bool border) {
+  MaterialId common = none;
+  double gain = 0.0;
+  double rare_gain = 0.0;  // of all others than the most common material
+  const auto area = [&](MaterialId m) { return mesh.material_area_m2[m]; };
+  for (const FaceId f : moved.faces()) {
+    const MaterialId m = mesh.source->face_material(f);
+    if (common == none || area(m) > area(common)) common = m;
+  }
+  for (const FaceId f : moved.faces()) {
+    const auto& p = mesh.faces[f].point;
+    const glm::dvec3 after = glm::cross(moved.at(p[1]) - moved.at(p[0]), moved.at(p[2]) - moved.at(p[0]));
+    const double more = glm::length(after) - glm::length(mesh.area_vector(mesh.faces[f]));
+    gain += more;
+    if (mesh.source->face_material(f) != common) rare_gain += more;
+  }
+  return border ? gain < -1e-6 : rare_gain > 1e-6;
+}
+
 // How far the lines through u leave their place when u goes to v.
-void judge_lines(const FacetMesh& mesh, const std::vector<Spoke>& spokes, std::uint32_t u, std::uint32_t v,
-                 Verdict& verdict) {
+void judge_lines(const FacetMesh& mesh, const Moved& moved, const std::vector<Spoke>& spokes, std::uint32_t u,
+                 std::uint32_t v, Verdict& verdict) {
   const glm::dvec3 from = mesh.at(u);
   const glm::dvec3 to = mesh.at(v);
   double u_to_new = std::numeric_limits<double>::infinity();
@@ -133,7 +155,8 @@ void judge_lines(const FacetMesh& mesh, const std::vector<Spoke>& spokes, std::u
   if (!std::isfinite(u_to_new)) u_to_new = glm::length(to - from);
   const double e = std::max(u_to_new, v_to_old);
   verdict.error_m = std::max(verdict.error_m, e);
-  verdict.cost += (border ? 1.0 : outline_weight) * swept * e * e / 3.0;
+  const double weight = goes_the_wrong_way(mesh, moved, border) ? growth_weight : border ? 1.0 : outline_weight;
+  verdict.cost += weight * swept * e * e / 3.0;
 }
 
 void add_deviation(const FacetMesh& mesh, std::span<const Move> moves, Verdict& verdict) {
@@ -160,7 +183,7 @@ Verdict judge_slide(const FacetMesh& mesh, Moved& moved, const Move& move, doubl
   }
   thread_local std::vector<Spoke> spokes;
   find_spokes(mesh, move.point, spokes);
-  judge_lines(mesh, spokes, move.point, move.onto, verdict);
+  judge_lines(mesh, moved, spokes, move.point, move.onto, verdict);
   add_deviation(mesh, {&move, 1}, verdict);
   verdict.allowed =
       verdict.faces_gone != 0 && verdict.cost <= most_cost && link_holds(mesh, spokes, move.point, move.onto);
@@ -174,8 +197,7 @@ Verdict judge_shift(const FacetMesh& mesh, Moved& moved, std::span<const Move> m
     const Face& face = mesh.faces[f];
     const auto& p = face.point;
     const bool gone = moved.point(p[0]) == moved.point(p[1]) || moved.point(p[1]) == moved.point(p[2]) ||
-                      moved.point(p[2]) == moved.point(p[0]) ||
-                      height_m(moved.at(p[0]), moved.at(p[1]), moved.at(p[2])) < line_height_m;
+                      moved.point(p[2]) == moved.point(p[0]);
     if (!gone) {
       if (!judge_face(mesh, moved, face, verdict)) return verdict;
       continue;

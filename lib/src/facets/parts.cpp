@@ -39,7 +39,52 @@ struct Rest {
       if (radius >= limit_m) return best;
     }
   }
+
+  // Whether a face of another part, before or behind, covers p when one looks along `across`.
+  [[nodiscard]] bool lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part,
+                                 double limit_m) const {
+    bool found = false;
+    const auto across_it = [&](FaceId f) {
+      return part_of[face_of[f]] != part && std::abs(glm::dot(mesh.faces[face_of[f]].normal, across)) > 0.7;
+    };
+    tree.within(p, limit_m, across_it, [&](FaceId f) {
+      const Face& face = mesh.faces[face_of[f]];
+      const glm::dvec3 a = mesh.at(face.point[0]);
+      const double d = std::sqrt(squared_distance_to_triangle(p, a, mesh.at(face.point[1]), mesh.at(face.point[2])));
+      found = d <= std::abs(glm::dot(p - a, face.normal)) + 1e-3;
+      return !found;
+    });
+    return found;
+  }
 };
+
+constexpr double held_m = 0.03;  // an outline nearer to the rest than this lies on it
+
+// A pane that closes an opening: its outline lies on the rest all around, and nothing is behind it. Without it one
+// would look through the wall.
+bool closes_opening(const FacetMesh& mesh, const Rest& rest, std::uint32_t id, double limit_m, const Part& part) {
+  const auto area = [&](FaceId f) { return glm::length(mesh.area_vector(mesh.faces[f])); };
+  const FaceId largest =
+      *std::max_element(part.faces.begin(), part.faces.end(), [&](FaceId a, FaceId b) { return area(a) < area(b); });
+  const glm::dvec3 across = mesh.faces[largest].normal;
+  double open = 0.0;
+  double whole = 0.0;
+  std::uint32_t corners = 0;
+  std::uint32_t held = 0;
+  for (const FaceId f : part.faces) {
+    const Face& face = mesh.faces[f];
+    if (std::abs(glm::dot(face.normal, across)) < 0.9) continue;
+    whole += area(f);
+    FaceId nearest = none;
+    const glm::dvec3 middle = (mesh.at(face.point[0]) + mesh.at(face.point[1]) + mesh.at(face.point[2])) / 3.0;
+    if (!rest.lies_behind(middle, across, id, limit_m)) open += area(f);
+    for (const std::uint32_t p : face.point) {
+      ++corners;
+      held += std::isfinite(rest.distance(mesh.at(p), id, held_m + double{mesh.deviation_m[p]}, nearest)) ? 1 : 0;
+    }
+  }
+  return 2.0 * open > whole && 10 * held >= 9 * corners;
+}
 
 // Looks from corners, middles of edges and of faces.
 void measure(const FacetMesh& mesh, const Rest& rest, std::uint32_t id, double limit_m, Part& part) {
@@ -94,7 +139,8 @@ std::vector<Part> find_parts(const FacetMesh& mesh, double limit_m) {
   for (auto& [root, part] : by_root) {
     if (part.faces.size() == most || part.faces.size() > most_part_faces) continue;
     measure(mesh, rest, root, limit_m, part);
-    if (std::isfinite(part.error_m)) parts.push_back(std::move(part));
+    if (std::isfinite(part.error_m) && !closes_opening(mesh, rest, root, limit_m, part))
+      parts.push_back(std::move(part));
   }
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
     return a.cost * static_cast<double>(b.faces.size()) < b.cost * static_cast<double>(a.faces.size());

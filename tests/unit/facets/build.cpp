@@ -69,7 +69,7 @@ TEST_CASE("every family of meshes builds, exact and monotone") {
   }
 }
 
-TEST_CASE("houses of every roof keep their planes") {
+TEST_CASE("houses of every roof keep their planes and stay closed") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
     HouseOptions options;
@@ -85,6 +85,7 @@ TEST_CASE("houses of every roof keep their planes") {
       const auto wanted = static_cast<std::uint32_t>(ratio * house->triangle_count());
       const Mesh level = built->model->extract(built->model->level_of_triangles(wanted));
       CAPTURE(ratio);
+      CHECK(inspect(level).boundary_edges == 0);
       CHECK(normal_deviation_rad(*house, level) < glm::radians(ratio < 0.1 ? 0.7 : 0.1));
     }
   }
