@@ -32,6 +32,7 @@ class Packer {
   void array(Array& values) {
     std::uint64_t count = values.size();
     plain(count);
+    if (count == 0) return;  // an empty array may have no address
     good_ = good_ && std::fwrite(values.data(), sizeof values[0], count, file_) == count;
   }
   template <class List, class Field>
@@ -64,6 +65,7 @@ class Unpacker {
       return;
     }
     values.resize(count);
+    if (count == 0) return;
     good_ = std::fread(values.data(), sizeof values[0], count, file_) == count;
   }
   template <class List, class Field>
