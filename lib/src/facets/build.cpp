@@ -6,6 +6,7 @@
 #include <lodestone/facet_shift.h>
 
 #include <algorithm>
+#include <array>
 #include <queue>
 
 #include "facets/facet_mesh.h"
@@ -46,11 +47,19 @@ class Builder {
     bool operator<(const Entry& b) const { return key != b.key ? key > b.key : point > b.point; }
   };
 
+  // What a shift would have cost when it was looked at last.
+  struct Known {
+    std::uint64_t version = 0;
+    double key = 0.0;
+  };
+
   void drop_degenerate();
   void offer(std::uint32_t point);
-  bool slide_points(double price);
+  void slide_points(double price);
   bool shift_planes(double price);
-  bool vanish_parts(double price);
+  [[nodiscard]] std::uint64_t version_of(std::uint32_t surface) const;
+  [[nodiscard]] double key_of_shift(std::uint32_t surface, Direction direction);
+  void vanish_parts(double price);
   void offer_around(std::uint32_t point);
   bool offer_later();
   [[nodiscard]] bool done() const { return mesh_.live_faces <= options_.target_triangles || context_.cancelled(); }
@@ -63,7 +72,8 @@ class Builder {
   Moved moved_;
   Planner planner_;
   std::priority_queue<Entry> queue_;
-  std::vector<std::uint32_t> later_;  // points to be looked at again
+  std::vector<std::uint32_t> later_;         // points to be looked at again
+  std::array<std::vector<Known>, 2> known_;  // per direction and surface
   FacetShiftReport report_;
 };
 
@@ -122,8 +132,7 @@ bool Builder::offer_later() {
   return true;
 }
 
-bool Builder::slide_points(double price) {
-  bool any = false;
+void Builder::slide_points(double price) {
   while (!done()) {
     if (queue_.empty() || queue_.top().key > price) {
       if (!offer_later()) break;
@@ -142,9 +151,23 @@ bool Builder::slide_points(double price) {
     apply(mesh_, moved_, v.error_m, log_);
     ++(v.tilts ? report_.tilting_collapses : report_.points_merged);
     offer_around(e.onto);
-    any = true;
   }
-  return any;
+}
+
+// Changes whenever something around the surface does.
+std::uint64_t Builder::version_of(std::uint32_t surface) const {
+  std::uint64_t sum = 1;
+  for (const FaceId f : mesh_.surface_faces[surface]) {
+    for (const std::uint32_t p : mesh_.faces[f].point) sum += mesh_.version[p];
+  }
+  return sum;
+}
+
+double Builder::key_of_shift(std::uint32_t surface, Direction direction) {
+  const Plan plan = planner_.plan(surface, direction);
+  if (plan.moves.empty()) return std::numeric_limits<double>::infinity();
+  const Verdict v = judge_shift(mesh_, moved_, plan.moves);
+  return v.allowed && v.error_m <= options_.max_error_m ? v.key() : std::numeric_limits<double>::infinity();
 }
 
 bool Builder::shift_planes(double price) {
@@ -158,11 +181,12 @@ bool Builder::shift_planes(double price) {
   for (std::uint32_t s = 0; s < mesh_.surface_faces.size() && !context_.cancelled(); ++s) {
     std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
     if (mesh_.surface_faces[s].empty()) continue;
+    const std::uint64_t version = version_of(s);
     for (const Direction direction : {Direction::Inwards, Direction::Outwards}) {
-      const Plan plan = planner_.plan(s, direction);
-      if (plan.moves.empty()) continue;
-      const Verdict v = judge_shift(mesh_, moved_, plan.moves);
-      if (v.allowed && v.key() <= price && v.error_m <= options_.max_error_m) offers.push_back({v.key(), s, direction});
+      Known& known = known_[static_cast<std::size_t>(direction)][s];
+      if (known.version == version && known.key > price) continue;
+      known = {version, key_of_shift(s, direction)};
+      if (known.key <= price) offers.push_back({known.key, s, direction});
     }
   }
   std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) { return a.key < b.key; });
@@ -182,8 +206,7 @@ bool Builder::shift_planes(double price) {
   return any;
 }
 
-bool Builder::vanish_parts(double price) {
-  bool any = false;
+void Builder::vanish_parts(double price) {
   // Farther than this no part of a face or more can be within the price.
   const double limit = std::min(options_.max_error_m, std::sqrt(price / 1e-3));
   std::vector<std::uint8_t> leant_upon(mesh_.point_count(), 0);
@@ -205,9 +228,7 @@ bool Builder::vanish_parts(double price) {
     }
     vanish(mesh_, part.faces, part.error_m, log_);
     ++report_.parts_vanished;
-    any = true;
   }
-  return any;
 }
 
 progressive::EditLog Builder::run(FacetShiftReport& report) {
@@ -218,6 +239,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     report_.openings += s.kind == SurfaceClass::Opening ? 1 : 0;
   }
   drop_degenerate();
+  for (auto& known : known_) known.resize(mesh_.surface_faces.size());
   for (std::uint32_t p = 0; p < mesh_.point_count() && !context_.cancelled(); ++p) offer(p);
   double area = 0.0;
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) area += s.area_m2;
@@ -228,8 +250,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     for (std::uint32_t round = 0; round < rounds_per_price && any && !done(); ++round) {
       slide_points(price);
       any = shift_planes(price);
-      any = vanish_parts(price) || any;
     }
+    if (!done()) vanish_parts(price);
     context_.report("facet shift",
                     1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
   }
