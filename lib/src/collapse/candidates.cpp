@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
 #include "collapse/wedges.h"
@@ -26,17 +27,60 @@ struct Around {
   std::vector<std::uint32_t> next, previous;
 };
 
+// Up to so many faces at a point its lists are searched as they are; longer ones are sorted first, or a hub of a fan
+// would cost the square of its faces.
+constexpr std::size_t few_faces = 64;
+
+// How often points occur in a list.
+class Counter {
+ public:
+  explicit Counter(const std::vector<std::uint32_t>& list) : list_(list) {
+    if (list.size() <= few_faces) return;
+    sorted_ = list;
+    std::sort(sorted_.begin(), sorted_.end());
+  }
+  [[nodiscard]] std::ptrdiff_t count(std::uint32_t p) const {
+    if (sorted_.empty()) return std::count(list_.begin(), list_.end(), p);
+    const auto [first, last] = std::equal_range(sorted_.begin(), sorted_.end(), p);
+    return last - first;
+  }
+
+ private:
+  const std::vector<std::uint32_t>& list_;
+  std::vector<std::uint32_t> sorted_;
+};
+
+// The points around, each once.
+template <class Visit>
+void for_each_neighbour(const Around& around, Visit&& visit) {
+  std::vector<std::uint32_t> all;
+  if (around.next.size() > few_faces) {
+    all = around.next;
+    all.insert(all.end(), around.previous.begin(), around.previous.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (const std::uint32_t p : all) visit(p);
+    return;
+  }
+  for (const std::vector<std::uint32_t>* list : {&around.next, &around.previous}) {
+    for (const std::uint32_t p : *list) {
+      if (std::find(all.begin(), all.end(), p) != all.end()) continue;
+      all.push_back(p);
+      visit(p);
+    }
+  }
+}
+
 // Edges that do not have one face on either side: adds their lines and tells what kind of point this is.
 std::uint8_t add_borders(const WorkingMesh& mesh, const Around& around, const glm::dvec3& at, double weight,
                          Symmetric3& quadric) {
   std::uint32_t border = 0;
   bool complex = false;
-  const auto count = [](const std::vector<std::uint32_t>& list, std::uint32_t p) {
-    return std::count(list.begin(), list.end(), p);
-  };
-  const auto visit = [&](std::uint32_t p) {
-    const auto out = count(around.next, p);
-    const auto in = count(around.previous, p);
+  const Counter next{around.next};
+  const Counter previous{around.previous};
+  for_each_neighbour(around, [&](std::uint32_t p) {
+    const auto out = next.count(p);
+    const auto in = previous.count(p);
     if (out == 1 && in == 1) return;
     if (out + in == 1) {
       ++border;
@@ -45,18 +89,30 @@ std::uint8_t add_borders(const WorkingMesh& mesh, const Around& around, const gl
     }
     const glm::dvec3 d = glm::dvec3{mesh.position[p]} - at;
     quadric.add_line(d, weight * glm::dot(d, d));
-  };
-  for (std::size_t i = 0; i < around.next.size(); ++i) {
-    const auto seen = around.next.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find(around.next.begin(), seen, *seen) == seen) visit(*seen);
-  }
-  for (std::size_t i = 0; i < around.previous.size(); ++i) {
-    const auto seen = around.previous.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find(around.previous.begin(), seen, *seen) == seen && count(around.next, *seen) == 0) visit(*seen);
-  }
+  });
   if (complex || border > 2) return point_complex;
   return border == 0 ? 0 : point_border;
 }
+
+// Where in a list each point comes first.
+class Finder {
+ public:
+  explicit Finder(const std::vector<std::uint32_t>& list) : list_(list) {
+    if (list.size() <= few_faces) return;
+    for (std::uint32_t i = 0; i < list.size(); ++i) sorted_.emplace_back(list[i], i);
+    std::sort(sorted_.begin(), sorted_.end());
+  }
+  // The list's size if it is not there.
+  [[nodiscard]] std::size_t find(std::uint32_t p) const {
+    if (sorted_.empty()) return static_cast<std::size_t>(std::find(list_.begin(), list_.end(), p) - list_.begin());
+    const auto at = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair{p, 0U});
+    return at != sorted_.end() && at->first == p ? at->second : list_.size();
+  }
+
+ private:
+  const std::vector<std::uint32_t>& list_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sorted_;
+};
 
 // Seams, material borders and sharp edges at a point: adds their lines and tells what they make of it.
 std::uint8_t add_inner_lines(const WorkingMesh& mesh, const LineRules& rules, std::uint32_t point, double sharp_cosine,
@@ -65,13 +121,13 @@ std::uint8_t add_inner_lines(const WorkingMesh& mesh, const LineRules& rules, st
   const std::uint32_t* corners = mesh.corners.data() + mesh.first[point];
   const auto offset = [&](std::uint32_t q) { return glm::dvec3{mesh.position[q]} - at; };
   const auto normal = [&](std::size_t i) { return glm::cross(offset(around.next[i]), offset(around.previous[i])); };
+  const Finder previous{around.previous};
   std::uint8_t flags = 0;
   std::uint32_t sharp = 0;
   for (std::size_t i = 0; i < around.next.size(); ++i) {
     const std::uint32_t q = around.next[i];
-    const auto twin = std::find(around.previous.begin(), around.previous.end(), q);
-    if (twin == around.previous.end()) continue;
-    const auto j = static_cast<std::size_t>(twin - around.previous.begin());
+    const std::size_t j = previous.find(q);
+    if (j == around.previous.size()) continue;
     const glm::dvec3 a = normal(i);
     const glm::dvec3 b = normal(j);
     const bool is_sharp = glm::dot(a, b) < sharp_cosine * std::sqrt(glm::dot(a, a) * glm::dot(b, b));
@@ -89,6 +145,13 @@ std::uint8_t add_inner_lines(const WorkingMesh& mesh, const LineRules& rules, st
 // Whether each edge at the point has one face on either side: every neighbour comes next once and previous once.
 bool closed_ring(const Around& around) {
   const std::size_t count = around.next.size();
+  if (count > few_faces) {
+    std::vector<std::uint32_t> out = around.next;
+    std::vector<std::uint32_t> in = around.previous;
+    std::sort(out.begin(), out.end());
+    std::sort(in.begin(), in.end());
+    return out == in && std::adjacent_find(out.begin(), out.end()) == out.end();
+  }
   const std::uint32_t* next = around.next.data();
   const std::uint32_t* previous = around.previous.data();
   for (std::size_t i = 0; i < count; ++i) {

@@ -14,8 +14,8 @@
 namespace lodestone::collapse {
 
 // Why an edge did not collapse.
-enum class Refusal : std::uint8_t { None, Busy, Outside, Seam, Border, Flip, Link, Frozen, Cost };
-inline constexpr std::size_t refusal_count = 9;
+enum class Refusal : std::uint8_t { None, Busy, Outside, Seam, Border, Flip, Link, Frozen, Cost, Crowded };
+inline constexpr std::size_t refusal_count = 10;
 
 // What all regions of a pass share.
 struct PassState {

@@ -269,6 +269,7 @@ CollapseReport Engine::report() const {
                     " by borders, " + percent(result.locked_by_flip) + " because a face would flip, " +
                     percent(result.locked_by_link) + " because the surface would touch itself, " +
                     percent(result.locked_by_frozen) + " by frozen or sharp vertices, " +
+                    percent(share(Refusal::Crowded)) + " by vertices of very many faces, " +
                     percent(share(Refusal::Cost)) + " by the error limit";
   return result;
 }

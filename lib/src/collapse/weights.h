@@ -22,6 +22,10 @@ inline constexpr double error_growth = 4.0;
 // A face may not turn further than this in one collapse (cosine).
 inline constexpr double flip_cosine = 0.2;
 
+// An edge whose ends have more faces waits until edges around it have collapsed: an attempt costs the square of the
+// faces, and the hub of a fan has an edge for each of them.
+inline constexpr unsigned most_star_faces = 512;
+
 // A part may vanish once this share of the largest error so far covers its distance from what stays.
 inline constexpr double prune_share = 1.0;
 
