@@ -95,6 +95,10 @@ Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source,
 }
 
 Status Build::run(Session& session) {
+  // A slip such as `-o house.obj` must not put the model in the place of its source.
+  if (output_.extension() != ".lode") {
+    return Error{ErrorCode::BadArgument, "models are written as .lode", output_.string()};
+  }
   auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   const Mesh source = std::move(loaded->mesh);

@@ -246,6 +246,7 @@ class Failures(Contract):
         self.fails(1, "extract", self.model, "--level", 1, "--ratio", 1, "-o", self.scratch / "a.obj")
         self.fails(1, "extract", self.model, "--level", 99999999, "-o", self.scratch / "a.obj")
         self.assertIn("'5ft'", self.fails(1, "extract", self.model, "--error", "5ft", "-o", self.scratch / "a.obj"))
+        self.assertIn(".lode", self.fails(1, "build", self.house, "-o", self.scratch / "a.obj"))
         self.fails(1, "generate", "castle", "-o", self.scratch / "a.obj")
         self.fails(1, "generate", "terrain", "--roof", "hip", "-o", self.scratch / "a.obj")
 
