@@ -75,6 +75,10 @@ void Arguments::flag(const std::string& names, bool& value, const std::string& h
   app_.add_flag(names, value, help);
 }
 
+void Arguments::word(const std::string& names, std::string& value, const std::string& type, const std::string& help) {
+  app_.add_option(names, value, help)->type_name(type)->default_str(value);
+}
+
 void Arguments::count(const std::string& names, std::uint32_t& value, std::uint32_t min, std::uint32_t max,
                       const std::string& help) {
   add(app_, names, value, count_parser(min, max), "N", help)->default_str(std::to_string(value));

@@ -31,6 +31,8 @@ class Arguments {
               const std::string& help, Need need = Need::Optional);
   void text(const std::string& names, std::optional<std::string>& value, const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
+  // A word that the verb itself looks at; `type` stands for it in the help.
+  void word(const std::string& names, std::string& value, const std::string& type, const std::string& help);
 
   void count(const std::string& names, std::uint32_t& value, std::uint32_t min, std::uint32_t max,
              const std::string& help);

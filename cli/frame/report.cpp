@@ -40,8 +40,11 @@ const char* name(ErrorCode code) {
 // File names may hold any bytes; what is not UTF-8 is replaced rather than refused.
 std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-// Keys that only a program wants; people get warnings and errors on stderr.
-bool for_machines(const std::string& key) { return key == "warnings" || key == "error" || key == "lodestone"; }
+// What only a program wants; people get warnings and errors on stderr.
+bool for_machines(const std::string& key, const Json& value) {
+  return key == "warnings" || key == "error" || key == "lodestone" || value.is_object() ||
+         (value.is_array() && !value.empty() && value.front().is_object());
+}
 
 }  // namespace
 
@@ -58,6 +61,16 @@ void Report::set(const std::string& key, std::uint64_t value) { content_->json[k
 void Report::set(const std::string& key, double value) { content_->json[key] = finite_or_null(value); }
 void Report::set(const std::string& key, const std::string& value) { content_->json[key] = value; }
 void Report::set(const std::string& key, const glm::dvec3& value) { content_->json[key] = to_array(value); }
+void Report::set(const std::string& key, const std::vector<std::uint32_t>& values) { content_->json[key] = values; }
+void Report::set(const std::string& key, const Report& object) { content_->json[key] = object.content_->json; }
+void Report::add(const std::string& key, const Report& object) { content_->json[key].push_back(object.content_->json); }
+
+void Report::set(const std::string& key, const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(finite_or_null(value));
+  content_->json[key] = std::move(list);
+}
+
 void Report::set_null(const std::string& key) { content_->json[key] = nullptr; }
 
 void Report::set(const std::string& key, const Box& value) {
@@ -80,16 +93,16 @@ std::string Report::to_json() const { return dump(content_->json); }
 std::string Report::to_lines() const {
   std::size_t width = 0;
   for (const auto& [key, value] : content_->json.items()) {
-    if (!for_machines(key)) width = std::max(width, key.size());
+    if (!for_machines(key, value)) width = std::max(width, key.size());
   }
   std::string lines;
   for (const auto& [key, value] : content_->json.items()) {
-    if (for_machines(key)) continue;
+    if (for_machines(key, value)) continue;
     lines += key + std::string(width - key.size() + 2, ' ');
     lines += value.is_string() ? value.get<std::string>() : dump(value);
     lines += '\n';
   }
-  return lines;
+  return lines + shown_;
 }
 
 }  // namespace lodestone::cli

@@ -27,7 +27,13 @@ class Report {
   void set(const std::string& key, const char* value) { set(key, std::string{value}); }
   void set(const std::string& key, const glm::dvec3& value);  // [x, y, z]
   void set(const std::string& key, const Box& value);         // [[x, y, z], [x, y, z]], null if empty
+  void set(const std::string& key, const std::vector<double>& values);
+  void set(const std::string& key, const std::vector<std::uint32_t>& values);
+  void set(const std::string& key, const Report& object);
+  void add(const std::string& key, const Report& object);  // to the end of the list `key`
   void set_null(const std::string& key);
+  // Lines for people, printed below the keys; they do not see keys that hold objects or lists of objects.
+  void show(const std::string& lines) { shown_ += lines; }
 
   void set_warnings(const std::vector<Warning>& warnings);
   void set_error(const Error& error);
@@ -38,6 +44,7 @@ class Report {
  private:
   struct Content;
   std::unique_ptr<Content> content_;
+  std::string shown_;
 };
 
 }  // namespace lodestone::cli

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <lodestone/discrete_levels.h>
 #include <lodestone/formats.h>
 
 #include "level_choice.h"
@@ -10,32 +11,41 @@ namespace {
 class Extract final : public Verb {
  public:
   [[nodiscard]] std::string name() const override { return "extract"; }
-  [[nodiscard]] std::string summary() const override { return "Write one level of a model as a mesh"; }
+  [[nodiscard]] std::string summary() const override {
+    return "Write one level of a model as a mesh, or the levels of a plan";
+  }
   [[nodiscard]] std::string example() const override {
     return "lodestone extract house.lode --ratio 0.1 -o house_10.glb";
   }
   void declare(Arguments& arguments) override {
     arguments.file("MODEL", model_, "Progressive model (.lode)", Need::Required);
-    arguments.file("-o,--output", output_, "File to write: .obj, .ply or .glb", Need::Required);
+    arguments.file("-o,--output", output_, "File to write: .obj, .ply or .glb; with --plan a folder", Need::Required);
     level_.declare(arguments);
+    arguments.file("--plan", plan_, "All levels of a plan made by 'distances': GLB, MSFT_lod, 3D Tiles",
+                   Need::Optional);
     arguments.bytes("--bytes", bytes_, "Use only the first so many bytes of the file");
   }
   [[nodiscard]] Status run(Session& session) override;
 
  private:
+  [[nodiscard]] Status write_plan(const ProgressiveModel& model, Session& session) const;
+
   std::filesystem::path model_;
   std::filesystem::path output_;
+  std::filesystem::path plan_;
   LevelChoice level_;
   std::uint64_t bytes_ = 0;
 };
 
 Status Extract::run(Session& session) {
-  if (level_.ways() != 1) {
-    return Error{ErrorCode::BadArgument, "extract needs exactly one of --triangles, --ratio, --error and --level", ""};
+  if (level_.ways() + int{!plan_.empty()} != 1) {
+    return Error{ErrorCode::BadArgument,
+                 "extract needs exactly one of --triangles, --ratio, --error, --level, --perceptual and --plan", ""};
   }
   auto model = read_model(model_, {.max_bytes = bytes_}, session.context());
   session.keep(model);
   if (!model) return model.error();
+  if (!plan_.empty()) return write_plan(**model, session);
   const auto level = level_.in(**model);
   if (!level) return level.error();
   const Mesh mesh = (*model)->extract(*level);
@@ -45,6 +55,20 @@ Status Extract::run(Session& session) {
   report.set("vertices", mesh.vertex_count());
   report.set("error_m", (*model)->error_m(*level));
   return write_mesh(mesh, output_, session.context());
+}
+
+Status Extract::write_plan(const ProgressiveModel& model, Session& session) const {
+  const auto plan = read_level_plan(plan_);
+  if (!plan) return plan.error();
+  for (const PlannedLevel& planned : plan->levels) {
+    Report level;
+    level.set("from_m", planned.from_m);
+    level.set("level", planned.level);
+    level.set("triangles", planned.triangles);
+    level.set("error_m", planned.error_m);
+    session.report().add("levels", level);
+  }
+  return write_levels(model, *plan, output_, session.context());
 }
 
 }  // namespace

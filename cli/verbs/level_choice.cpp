@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include <lodestone/perception.h>
+
 namespace lodestone::cli {
 
 void LevelChoice::declare(Arguments& arguments) {
@@ -11,10 +13,15 @@ void LevelChoice::declare(Arguments& arguments) {
   arguments.number("--ratio", ratio_, 0.0, 1.0, "The same as a share of the source's triangles");
   arguments.length_m("--error", error_m_, "The coarsest level that deviates by at most this");
   arguments.text("--level", level_, "This level, 0 is the base; or its name: lod3, lod2, lod1, block");
+  arguments.length_m(
+      "--perceptual", perceptual_m_,
+      "The coarsest level that deviates by at most half a pixel from this distance, on a screen of 1280 x "
+      "1024 under 33 degrees");
 }
 
 int LevelChoice::ways() const noexcept {
-  return int{triangles_.has_value()} + int{ratio_.has_value()} + int{error_m_.has_value()} + int{level_.has_value()};
+  return int{triangles_.has_value()} + int{ratio_.has_value()} + int{error_m_.has_value()} + int{level_.has_value()} +
+         int{perceptual_m_.has_value()};
 }
 
 Result<Level> LevelChoice::in(const ProgressiveModel& model) const {
@@ -22,6 +29,7 @@ Result<Level> LevelChoice::in(const ProgressiveModel& model) const {
   if (ratio_) {
     return model.level_of_triangles(static_cast<std::uint32_t>(std::floor(*ratio_ * model.face_slot_count())));
   }
+  if (perceptual_m_) return model.level_of_error(imperceptible_error_m(*perceptual_m_, focal_length_px(Display{})));
   if (error_m_) return model.level_of_error(*error_m_);
   Level level = 0;
   const auto [end, fault] = std::from_chars(level_->data(), level_->data() + level_->size(), level);

@@ -25,6 +25,7 @@ class LevelChoice {
   std::optional<double> ratio_;
   std::optional<double> error_m_;
   std::optional<std::string> level_;
+  std::optional<double> perceptual_m_;
 };
 
 }  // namespace lodestone::cli

@@ -68,7 +68,8 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
 
 Result<render::Picture> Render::draw(Session& session, const render::RenderOptions& options) const {
   if (level_.ways() > 1) {
-    return Error{ErrorCode::BadArgument, "name the level by one of --triangles, --ratio, --error and --level", ""};
+    return Error{ErrorCode::BadArgument,
+                 "name the level by one of --triangles, --ratio, --error, --level and --perceptual", ""};
   }
   if (is_model_file(input_.file())) return draw_model(session, options);
   if (level_.ways() > 0 || sheet_levels_ > 0) {

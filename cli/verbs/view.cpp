@@ -20,11 +20,15 @@ class View final : public Verb {
     return "Open the window: slider, orbit, wireframe, frame graph";
   }
   [[nodiscard]] std::string example() const override { return "lodestone view house.lode"; }
-  void declare(Arguments& arguments) override { arguments.file("FILE", file_, "Mesh or .lode file", Need::Required); }
+  void declare(Arguments& arguments) override {
+    arguments.file("FILE", file_, "Mesh or .lode file", Need::Required);
+    arguments.flag("--perceptual", perceptual_, "Level by the camera's distance: what an eye cannot tell apart");
+  }
   [[nodiscard]] Status run(Session& session) override;
 
  private:
   std::filesystem::path file_;
+  bool perceptual_ = false;
 };
 
 // lodestone-view beside this program, as installed; else in the build tree; else on the PATH.
@@ -43,15 +47,17 @@ struct Ended {
 };
 
 // Runs a program to its end; none if it cannot be started.
-std::optional<Ended> run_to_end(std::string program, std::string argument) {
-  char* words[] = {program.data(), argument.data(), nullptr};
+std::optional<Ended> run_to_end(std::vector<std::string> command) {
+  std::vector<char*> words;
+  for (std::string& word : command) words.push_back(word.data());
+  words.push_back(nullptr);
   int channel[2];
   if (::pipe2(channel, O_CLOEXEC) != 0) return std::nullopt;
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, channel[1], STDERR_FILENO);
   pid_t child = 0;
-  const int fault = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, words, environ);
+  const int fault = ::posix_spawnp(&child, words.front(), &actions, nullptr, words.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ::close(channel[1]);
   std::FILE* said = ::fdopen(channel[0], "r");
@@ -71,7 +77,9 @@ Status View::run(Session& session) {
     return Error{ErrorCode::NotFound, "there is no such file", file_.string()};
   }
   const std::string program = find_viewer().string();
-  const auto ended = run_to_end(program, file_.string());
+  std::vector<std::string> command{program, file_.string()};
+  if (perceptual_) command.emplace_back("--perceptual");
+  const auto ended = run_to_end(std::move(command));
   if (!ended) {
     return Error{ErrorCode::NotFound, "cannot be started, install lodestone-view beside lodestone", program};
   }

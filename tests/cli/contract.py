@@ -22,7 +22,8 @@ from pathlib import Path
 PROGRAM = os.environ.get("LODESTONE", "lodestone")
 MANUAL = Path(__file__).resolve().parents[2] / "docs" / "COMMAND_LINE.md"
 COMMON = {"lodestone", "seconds", "peak_rss_bytes", "warnings"}
-VERBS = ["inspect", "generate", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare", "view"]
+VERBS = ["inspect", "generate", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare", "distances",
+         "view"]
 
 
 def run(*words, **options):
@@ -81,7 +82,7 @@ class Help(Contract):
         self.assertEqual(done.returncode, 0)
         for verb in VERBS:
             self.assertRegex(done.stdout, rf"(?m)^\s+{verb}\s")
-        for later in ("clusters", "cut ", "terrain ", "distances"):
+        for later in ("clusters", "cut ", "terrain "):
             self.assertNotRegex(done.stdout, rf"(?m)^\s+{later}\s*")
 
     def test_every_verb_explains_itself_with_an_example(self):
@@ -93,7 +94,8 @@ class Help(Contract):
                 self.assertIn(option, done.stdout)
 
     def test_the_examples_run_as_they_stand(self):
-        order = ["generate", "inspect", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare"]
+        order = ["generate", "inspect", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare",
+                 "distances"]
         for verb in order:
             example = run(verb, "--help").stdout.rsplit("Example:\n", 1)[1].splitlines()[0]
             words = shlex.split(example)
@@ -234,6 +236,61 @@ class Keys(Contract):
         self.json("sweep", self.model, *common, "-o", self.scratch / "frames", "--video", gif)
         self.assertEqual(len(list((self.scratch / "frames").glob("*.png"))), 12)
         self.assertEqual(gif.read_bytes()[:6], b"GIF89a")
+
+
+    def test_distances(self):
+        folder = self.scratch / "plan"
+        words = ("distances", self.model, "--levels", 3, "--samples", 24, "--screen", "320x256", "--sides", "front,left")
+        found = self.keys("fit switch_m redundancy cost alternatives", *words, "-o", folder)
+        self.assertLessEqual({"a", "b", "c", "d", "r_square", "rmse"}, set(found["fit"]))
+        self.assertEqual(len(found["switch_m"]), 3)
+        self.assertEqual(found["switch_m"], sorted(found["switch_m"]))
+        self.assertEqual(found["switch_m"][0], found["first_m"])
+        self.assertEqual([side["name"] for side in found["sides"]], ["front", "left"])
+        for plan in found["alternatives"]:
+            self.assertGreaterEqual(plan["redundancy"], found["redundancy"])
+        self.assertLessEqual(max(found["measured"]["noticeable_ratio"]), 0.01)
+        for name in ("metric", "redundancy", "triangles", "rendered", "seen", "difference"):
+            self.assertEqual((folder / f"{name}.png").read_bytes()[:4], b"\x89PNG", name)
+        for threads in (1, 2, 8):
+            again = self.json(*words, "--threads", threads)
+            for key in set(found) - COMMON:
+                self.assertEqual(again[key], found[key], key)
+        people = run(*words)
+        self.assertIn("minimum redundancy", people.stdout)
+        self.assertIn("supersampling: off", people.stderr)
+        self.assertNotIn('"name"', people.stdout)
+
+    def test_distances_levels_are_written(self):
+        folder = self.scratch / "plan"
+        self.json("distances", self.model, "--levels", 4, "--samples", 12, "--screen", "320x256", "-o", folder)
+        plan = json.loads((folder / "plan.json").read_text())
+        levels = self.json("extract", self.model, "--plan", folder / "plan.json", "-o", self.scratch / "out")["levels"]
+        self.assertEqual([level["level"] for level in levels], [level["level"] for level in plan["levels"]])
+        for i, level in enumerate(levels):
+            self.assertEqual(self.json("inspect", self.scratch / "out" / f"level_{i}.glb")["triangles"],
+                             level["triangles"])
+        tile = json.loads((self.scratch / "out" / "tileset.json").read_text())["root"]
+        uris, errors = [], []
+        while tile:
+            uris.append(tile["content"]["uri"])
+            errors.append(tile["geometricError"])
+            tile = tile.get("children", [None])[0]
+        self.assertEqual(uris, [f"level_{i}.glb" for i in reversed(range(len(levels)))])
+        self.assertEqual(errors, sorted(errors, reverse=True))
+        self.assertEqual(errors[-1], 0)
+        other = self.scratch / "other.lode"
+        self.json("build", self.house, "--placement", "midpoint", "--target-triangles", 2000, "-o", other)
+        self.assertIn("another model", self.fails(1, "extract", other, "--plan", folder / "plan.json", "-o",
+                                                  self.scratch / "no"))
+        (self.scratch / "bad.json").write_text('{"format": 3}')
+        self.assertIn("bad.json", self.fails(2, "extract", self.model, "--plan", self.scratch / "bad.json", "-o",
+                                             self.scratch / "no"))
+
+    def test_distances_refuses_what_it_cannot_look_at(self):
+        for words in (("--levels", "0"), ("--levels", "many"), ("--sides", "top"), ("--sides", ""), ("--samples", 3),
+                      ("--fov", 0), ("--dpi", 0), ("--supersample", 9)):
+            self.fails(1, "distances", self.model, *words)
 
 
 class Failures(Contract):

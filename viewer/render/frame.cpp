@@ -26,7 +26,8 @@ Result<Frame> Frame::create(const Gl& gl, const FrameSize& size) {
   }
   const auto w = static_cast<GLsizei>(width);
   const auto h = static_cast<GLsizei>(height);
-  const GLint samples = std::min(4, max_samples);
+  const GLint samples =
+      size.coverage_samples > 1 ? std::min(static_cast<GLint>(size.coverage_samples), max_samples) : 0;
   Frame frame{gl, size};
   gl.gen_renderbuffers(1, &frame.color_);
   gl.bind_renderbuffer(GL_RENDERBUFFER, frame.color_);

@@ -13,8 +13,10 @@ namespace lodestone::render {
 struct FrameSize {
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
-  /// Shaded texels per pixel and axis, 1..4; on top of the driver's multisampling (up to 4 coverage samples).
+  /// Shaded texels per pixel and axis, 1..4; on top of the driver's multisampling.
   std::uint32_t supersample = 1;
+  /// Coverage samples per texel, as many as the driver has up to this; 1 = edges are not smoothed.
+  std::uint32_t coverage_samples = 4;
   friend bool operator==(const FrameSize&, const FrameSize&) = default;
 };
 

@@ -115,6 +115,10 @@ void App::show(const Loader::Model& model) {
     control_.slider = control_.slider_of(static_cast<std::uint32_t>(*options_.ratio * finest));
   }
   if (first && options_.play) control_.mode = LevelMode::Sweep;
+  if (first && options_.perceptual) {
+    control_.mode = LevelMode::Automatic;
+    control_.max_error_px = 0.5F;
+  }
 }
 
 void App::use_input(double dt_s) {

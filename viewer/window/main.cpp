@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   app.add_option("--height", options.height_px, "window's height in pixels")->check(CLI::Range(200, 16384));
   app.add_option("--screenshot", options.screenshot, "write the window as PNG once the level is reached, and close");
   app.add_flag("--play", options.play, "start sweeping through the levels");
+  app.add_flag("--perceptual", options.perceptual, "level by the camera's distance: what an eye cannot tell apart");
   app.add_flag("--wireframe", options.wireframe, "draw triangle edges");
   app.add_flag("--lod-colors", options.lod_colors, "colour by triangle size");
   try {

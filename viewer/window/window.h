@@ -19,6 +19,8 @@ struct WindowOptions {
   /// Written, panel and all, once the model has arrived at its level; the window closes then.
   std::filesystem::path screenshot;
   bool play = false;  ///< start the sweep
+  /// Start with the level that the camera's distance asks for: at most half a pixel off (equation 17 of perception.h).
+  bool perceptual = false;
   bool wireframe = false;
   bool lod_colors = false;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Binary glTF 2.0: one mesh, one primitive per material over shared vertex arrays, everything in one file.
+// Binary glTF 2.0: one primitive per material over shared vertex arrays, everything in one file. Several levels of one
+// model become one mesh each, that share materials and textures (MSFT_lod).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -39,27 +40,37 @@ Result<EncodedTexture> jpeg_or_png(const Texture& texture) {
 
 class GlbWriter {
  public:
-  explicit GlbWriter(const Mesh& mesh) : mesh_{mesh} {}
+  // The finest level first; all have the surroundings of the first.
+  explicit GlbWriter(std::span<const GltfLevel> levels) : first_{*levels.front().mesh} {
+    for (const GltfLevel& level : levels) parts_.push_back({level.mesh, {}, false, level.least_coverage});
+  }
   [[nodiscard]] Status plan(std::vector<Warning>& warnings);
   [[nodiscard]] std::uint64_t total_bytes() const { return 12 + 8 + json_.size() + 8 + binary_bytes_; }
   void write(BlockWriter& out) const;
 
  private:
+  struct Part {
+    const Mesh* mesh;
+    std::vector<std::vector<FaceId>> faces;  // by material
+    bool short_indices;
+    double least_coverage;
+  };
   int add_view(std::uint64_t size, int target);
   int add_accessor(int view, int type, std::uint64_t count, const char* shape);
-  void plan_faces();
-  [[nodiscard]] Json plan_attributes();
+  static void plan_faces(Part& part);
+  [[nodiscard]] Json plan_attributes(const Mesh& mesh);
+  [[nodiscard]] Json plan_primitives(const Part& part);
+  void plan_levels(Json& node);
   void plan_textures(std::vector<Warning>& warnings);
   [[nodiscard]] Json material_json(const Material& material) const;
-  void write_vertices(BlockWriter& out) const;
-  void write_indices(BlockWriter& out) const;
+  static void write_vertices(const Mesh& mesh, BlockWriter& out);
+  static void write_indices(const Part& part, BlockWriter& out);
 
-  const Mesh& mesh_;
+  const Mesh& first_;
+  std::vector<Part> parts_;
   Json root_;
   std::string json_;
   std::uint64_t binary_bytes_ = 0;
-  std::vector<std::vector<FaceId>> faces_;  // by material
-  bool short_indices_ = false;
   std::vector<EncodedTexture> images_;
   std::vector<int> texture_ids_;  // -1 for those left out
 };
@@ -77,15 +88,16 @@ int GlbWriter::add_accessor(int view, int type, std::uint64_t count, const char*
   return static_cast<int>(root_["accessors"].size()) - 1;
 }
 
-void GlbWriter::plan_faces() {
-  faces_.resize(mesh_.materials.size());
-  for (FaceId f = 0; f < mesh_.triangle_count(); ++f) faces_[mesh_.face_material(f)].push_back(f);
+void GlbWriter::plan_faces(Part& part) {
+  const Mesh& mesh = *part.mesh;
+  part.faces.resize(mesh.materials.size());
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) part.faces[mesh.face_material(f)].push_back(f);
   constexpr std::uint32_t restart = 65535;  // the largest 16-bit index has a meaning of its own
-  short_indices_ = mesh_.vertex_count() <= restart;
+  part.short_indices = mesh.vertex_count() <= restart;
 }
 
-Json GlbWriter::plan_attributes() {
-  const VertexArrays& v = mesh_.vertices;
+Json GlbWriter::plan_attributes(const Mesh& mesh) {
+  const VertexArrays& v = mesh.vertices;
   const std::uint64_t count = v.size();
   Json attributes;
   glm::vec3 low{std::numeric_limits<float>::infinity()};
@@ -108,8 +120,34 @@ Json GlbWriter::plan_attributes() {
   return attributes;
 }
 
+Json GlbWriter::plan_primitives(const Part& part) {
+  const Json attributes = plan_attributes(*part.mesh);
+  Json primitives = Json::array();
+  for (std::size_t m = 0; m < part.faces.size(); ++m) {
+    if (part.faces[m].empty()) continue;
+    const std::uint64_t count = 3 * part.faces[m].size();
+    const int view = add_view(count * (part.short_indices ? 2 : 4), ElementArrayBuffer);
+    const int indices = add_accessor(view, part.short_indices ? UnsignedShort : UnsignedInt, count, "SCALAR");
+    primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", m}});
+  }
+  return primitives;
+}
+
+// The first node is the finest level and names the others.
+void GlbWriter::plan_levels(Json& node) {
+  Json ids = Json::array();
+  Json coverage = Json::array();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (i > 0) ids.push_back(i);
+    coverage.push_back(parts_[i].least_coverage);
+  }
+  node["extensions"]["MSFT_lod"]["ids"] = std::move(ids);
+  node["extras"]["MSFT_screencoverage"] = std::move(coverage);
+  root_["extensionsUsed"].push_back("MSFT_lod");
+}
+
 void GlbWriter::plan_textures(std::vector<Warning>& warnings) {
-  for (const Texture& texture : mesh_.textures) {
+  for (const Texture& texture : first_.textures) {
     texture_ids_.push_back(-1);
     auto encoded = jpeg_or_png(texture);
     if (!encoded) {
@@ -147,27 +185,25 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
   root_["asset"] = {{"version", "2.0"}, {"generator", "Lodestone"}};
   root_["scene"] = 0;
   root_["scenes"].push_back({{"nodes", {0}}});
-  Json node{{"name", "lodestone"}};
-  const glm::dvec3 origin = z_up_to_y_up(mesh_.origin);
-  if (origin != glm::dvec3{0.0}) node["translation"] = {origin.x, origin.y, origin.z};
-  if (!mesh_.crs.empty()) node["extras"] = {{"crs", mesh_.crs}};
-  if (mesh_.triangle_count() > 0) {
-    plan_faces();
-    const Json attributes = plan_attributes();
-    Json primitives = Json::array();
-    for (std::size_t m = 0; m < faces_.size(); ++m) {
-      if (faces_[m].empty()) continue;
-      const std::uint64_t count = 3 * faces_[m].size();
-      const int view = add_view(count * (short_indices_ ? 2 : 4), ElementArrayBuffer);
-      const int indices = add_accessor(view, short_indices_ ? UnsignedShort : UnsignedInt, count, "SCALAR");
-      primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", m}});
+  const bool empty = first_.triangle_count() == 0;
+  const glm::dvec3 origin = z_up_to_y_up(first_.origin);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Json node{{"name", "lodestone"}};
+    if (origin != glm::dvec3{0.0}) node["translation"] = {origin.x, origin.y, origin.z};
+    if (!first_.crs.empty()) node["extras"] = {{"crs", first_.crs}};
+    if (!empty) {
+      plan_faces(parts_[i]);
+      Json primitives = plan_primitives(parts_[i]);
+      root_["meshes"].push_back({{"primitives", std::move(primitives)}});
+      node["mesh"] = i;
     }
-    plan_textures(warnings);
-    for (const Material& material : mesh_.materials) root_["materials"].push_back(material_json(material));
-    root_["meshes"].push_back({{"primitives", std::move(primitives)}});
-    node["mesh"] = 0;
+    if (i == 0 && parts_.size() > 1) plan_levels(node);
+    root_["nodes"].push_back(std::move(node));
   }
-  root_["nodes"].push_back(std::move(node));
+  if (!empty) {
+    plan_textures(warnings);
+    for (const Material& material : first_.materials) root_["materials"].push_back(material_json(material));
+  }
   if (binary_bytes_ > 0) root_["buffers"].push_back({{"byteLength", binary_bytes_}});
   json_ = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
   json_.resize(padded(json_.size()), ' ');
@@ -177,8 +213,8 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
   return Done{};
 }
 
-void GlbWriter::write_vertices(BlockWriter& out) const {
-  const VertexArrays& v = mesh_.vertices;
+void GlbWriter::write_vertices(const Mesh& mesh, BlockWriter& out) {
+  const VertexArrays& v = mesh.vertices;
   for (std::size_t i = 0; i < v.positions.size() && out.pass(); ++i) out.raw(z_up_to_y_up(v.positions[i]));
   for (std::size_t i = 0; i < v.normals.size() && out.pass(); ++i) {
     glm::vec3 n = z_up_to_y_up(v.normals[i]);
@@ -197,12 +233,12 @@ void GlbWriter::write_vertices(BlockWriter& out) const {
   }
 }
 
-void GlbWriter::write_indices(BlockWriter& out) const {
-  for (const auto& faces : faces_) {
+void GlbWriter::write_indices(const Part& part, BlockWriter& out) {
+  for (const auto& faces : part.faces) {
     for (const FaceId f : faces) {
       for (int c = 0; c < 3; ++c) {
-        const VertexId v = mesh_.indices[3 * std::size_t{f} + c];
-        if (short_indices_) {
+        const VertexId v = part.mesh->indices[3 * std::size_t{f} + c];
+        if (part.short_indices) {
           out.raw(static_cast<std::uint16_t>(v));
         } else {
           out.raw(v);
@@ -210,7 +246,7 @@ void GlbWriter::write_indices(BlockWriter& out) const {
       }
       if (!out.pass()) return;
     }
-    if (short_indices_ && faces.size() % 2 == 1) out.raw(std::uint16_t{0});
+    if (part.short_indices && faces.size() % 2 == 1) out.raw(std::uint16_t{0});
   }
 }
 
@@ -225,8 +261,10 @@ void GlbWriter::write(BlockWriter& out) const {
   if (!has_binary) return;
   out.raw(static_cast<std::uint32_t>(binary_bytes_));
   out.text(std::string_view{"BIN\0", 4});
-  write_vertices(out);
-  write_indices(out);
+  for (const Part& part : parts_) {
+    write_vertices(*part.mesh, out);
+    write_indices(part, out);
+  }
   for (const EncodedTexture& image : images_) {
     out.text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
     out.text(std::string(padded(image.bytes.size()) - image.bytes.size(), '\0'));
@@ -235,9 +273,9 @@ void GlbWriter::write(BlockWriter& out) const {
 
 }  // namespace
 
-Status write_glb(const Mesh& mesh, const std::filesystem::path& file, const Context& context) {
+Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file, const Context& context) {
   std::vector<Warning> warnings;
-  GlbWriter writer{mesh};
+  GlbWriter writer{levels};
   if (auto planned = writer.plan(warnings); !planned) {
     return Error{planned.error().code, planned.error().message, file.string()};
   }
@@ -247,6 +285,11 @@ Status write_glb(const Mesh& mesh, const std::filesystem::path& file, const Cont
   writer.write(out);
   if (auto done = out.commit(); !done) return done;
   return {Done{}, std::move(warnings)};
+}
+
+Status write_glb(const Mesh& mesh, const std::filesystem::path& file, const Context& context) {
+  const GltfLevel only{&mesh, 0.0};
+  return write_gltf_levels({&only, 1}, file, context);
 }
 
 }  // namespace lodestone

@@ -17,6 +17,15 @@ namespace lodestone {
 [[nodiscard]] Status write_ply(const Mesh& mesh, const std::filesystem::path& file, const Context& context);
 [[nodiscard]] Status write_glb(const Mesh& mesh, const std::filesystem::path& file, const Context& context);
 
+// One level of MSFT_lod: shown while the model covers at least this share of the screen, 0..1.
+struct GltfLevel {
+  const Mesh* mesh = nullptr;
+  double least_coverage = 0.0;
+};
+// A GLB; the finest level first. Precondition: at least one, all levels of one model.
+[[nodiscard]] Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file,
+                                       const Context& context);
+
 // An OutputFile behind a block of memory, watched by a Context.
 class BlockWriter {
  public:

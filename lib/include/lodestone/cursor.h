@@ -43,6 +43,11 @@ class Target {
   [[nodiscard]] static Target ratio(double ratio) noexcept { return {Kind::ByRatio, ratio}; }
   /// The coarsest level that deviates by at most so many metres.
   [[nodiscard]] static Target error_m(double error_m) noexcept { return {Kind::ByError, error_m}; }
+  /// What an eye cannot tell from the source at `distance_m` from the middle of the model: the coarsest level that
+  /// deviates by at most half a pixel there (equation 17 of perception.h). `focal_px` as in view.h.
+  [[nodiscard]] static Target perceptual(double distance_m, double focal_px) noexcept {
+    return {Kind::ByError, distance_m / (2.0 * focal_px)};
+  }
   /// The coarsest level that deviates by at most `max_error_px` on the screen. With hysteresis: the target stays while
   /// the error of the present target lies within [1 - h, 1 + h] times the limit, so a camera that rests does not
   /// flicker.

@@ -6,7 +6,7 @@
 ///
 /// Pure functions: images in, numbers out. Whoever calls brings the renderer (see `sample_perceptual_metric`).
 ///
-///     render at distances -> PerceptualMetric -> fit_detail -> design_switches -> levels of a ProgressiveModel
+///     render at distances -> sample_perceptual_metric -> fit_detail -> design_switches -> levels of a ProgressiveModel
 #pragma once
 
 #include <array>
@@ -17,6 +17,7 @@
 
 #include <lodestone/context.h>
 #include <lodestone/image.h>
+#include <lodestone/mesh.h>
 #include <lodestone/progressive_model.h>
 #include <lodestone/result.h>
 
@@ -52,6 +53,20 @@ inline constexpr double peak_frequency_cpd = 6.2;
 
 /// Equation 17: deviation in metres that covers half a pixel at a distance: what may be simplified away there.
 [[nodiscard]] double imperceptible_error_m(double distance_m, double focal_px) noexcept;
+
+/// A building as the four sides of it are looked at.
+struct Sides {
+  double front_rad = 0.0;  ///< direction that the front faces: 0 = north (+y), clockwise seen from above
+  Sphere bounds;           ///< about the middle of the box, relative to the origin; encloses every vertex in use
+
+  [[nodiscard]] double back_rad() const noexcept;
+  [[nodiscard]] double left_rad() const noexcept;  ///< to the left of who stands before the front
+  [[nodiscard]] double right_rad() const noexcept;
+};
+
+/// Sides by orientation: along the direction that most wall area agrees on (modulo a right angle); the front is the
+/// one of the four that most triangles face. South where there are no walls. O(triangles).
+[[nodiscard]] Sides find_sides(const Mesh& mesh);
 
 /// What an eye at the display's viewing distance can make of a picture: the picture without the detail that is too fine
 /// (section 3.2: Daubechies 9/7 wavelet, contrast sensitivity by band, back). Holds the filters; thread-safe.
@@ -130,6 +145,16 @@ using RenderAtDistance = std::function<Result<ObjectPicture>(double distance_m)>
                                                                          const RenderAtDistance& render,
                                                                          const Context& context = {});
 
+/// The same at given distances, ascending; the first is d1. For further sides at the distances of the first one.
+[[nodiscard]] Result<std::vector<DetailSample>> sample_perceptual_metric(const std::vector<double>& distances_m,
+                                                                         const VisionModel& vision,
+                                                                         const RenderAtDistance& render,
+                                                                         const Context& context = {});
+
+/// Several sides as one object: pixels of the same distances are added up. Precondition: at least one side, equal
+/// distances.
+[[nodiscard]] std::vector<DetailSample> pool_sides(const std::vector<std::vector<DetailSample>>& sides);
+
 /// Equation 15: f(x) = a exp(b x) + c exp(d x), x in metres beyond d1. Falls: b, d <= 0.
 struct DetailFit {
   double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
@@ -150,6 +175,8 @@ struct SwitchPlan {
   std::string name;                      ///< "minimum redundancy", "equal 100 m", "exponential 2", ...
   std::vector<double> switch_m;          ///< metres beyond d1, ascending; the first is 0
   double redundancy = 0.0;               ///< equation 12 with TD_0 = 1
+  double allowed_px = 0.5;               ///< deviation of each level on the screen at its distance; equation 17: half
+  std::vector<Level> levels;             ///< of the model, if one was given
   std::vector<std::uint32_t> triangles;  ///< of each level, if a model was given
   double cost = 0.0;                     ///< equation 18, if a model was given
 };
@@ -173,15 +200,20 @@ struct SwitchPlan {
 [[nodiscard]] SwitchPlan exponential_intervals(const DetailFit& fit, std::uint32_t levels, double factor,
                                                double first_m, double last_m);
 
-/// Fills in triangles and cost of a plan: each level is the coarsest of `model` that equation 17 allows at its
-/// distance.
+/// Fills in levels, triangles and cost of a plan: each level is the coarsest of `model` that deviates by at most
+/// `plan.allowed_px` at its distance. `last_m` is beyond d1.
 void add_cost(SwitchPlan& plan, const ProgressiveModel& model, double first_m, double last_m, double focal_px);
+
+/// Sets `plan.allowed_px`, between 0.001 and 64, to the least with which the plan costs at most `cost`, and fills it
+/// in: how fine its levels can be for the cost of another plan.
+void match_cost(SwitchPlan& plan, double cost, const ProgressiveModel& model, double first_m, double last_m,
+                double focal_px);
 
 /// The check of section 5.2 between a picture and another (its vision simulation, or a coarser level), over the object.
 struct VisionCheck {
   double ssim = 1.0;              ///< structural similarity (Wang et al. 2004), mean over object pixels
   double noticeable_ratio = 0.0;  ///< share of object pixels that differ by more than a just noticeable difference
-  Image difference;               ///< grey = equal, white = noticeable; one channel
+  Image difference;               ///< dark grey = equal, white = noticeable, black = not the object; one channel
 };
 
 /// Both pictures are first seen through `vision`; a pixel differs noticeably where their difference exceeds the
@@ -189,5 +221,13 @@ struct VisionCheck {
 /// in its simplest form). Errors: BadArgument if sizes disagree or the mask is empty.
 [[nodiscard]] Result<VisionCheck> check_vision(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask,
                                                const VisionModel& vision);
+
+/// The check of the vision model itself (Table 1 of the paper): structural similarity of a rendered picture and its
+/// simulation as they are, and the share of object pixels whose loss an eye would notice.
+[[nodiscard]] Result<VisionCheck> check_simulation(const ObjectPicture& picture, const VisionModel& vision);
+
+/// Where the eye loses something (Figure 7): light grey = the same, the darker the more differs, white = not the
+/// object.
+[[nodiscard]] Result<Image> difference_map(const ObjectPicture& picture, const VisionModel& vision);
 
 }  // namespace lodestone

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+
+#include "perception/luminance.h"
 
 namespace lodestone {
 namespace {
@@ -47,23 +50,12 @@ double similarity(double n, double a, double b, double aa, double bb, double ab)
   return (2.0 * ma * mb + c1) * (2.0 * covariance + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
 }
 
-}  // namespace
-
-Result<VisionCheck> check_vision(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask,
-                                 const VisionModel& vision) {
+// Two grey pictures of one size, pixel by pixel where the mask is set.
+VisionCheck compare(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask) {
   const std::size_t width = a.width;
   const std::size_t height = a.height;
-  if (a.empty() || a.width != b.width || a.height != b.height || mask.size() != width * height ||
-      std::all_of(mask.begin(), mask.end(), [](std::uint8_t m) { return m == 0; })) {
-    return Error{ErrorCode::BadArgument, "pictures and mask must be of one size, and the mask must not be empty",
-                 "vision check"};
-  }
-  const auto seen_a = vision.simulate(a);
-  if (!seen_a) return seen_a.error();
-  const auto seen_b = vision.simulate(b);
-  if (!seen_b) return seen_b.error();
-  const auto& pa = seen_a->pixels;
-  const auto& pb = seen_b->pixels;
+  const auto& pa = a.pixels;
+  const auto& pb = b.pixels;
   const Sums sa{width, height, [&](std::size_t i) { return static_cast<double>(pa[i]); }};
   const Sums sb{width, height, [&](std::size_t i) { return static_cast<double>(pb[i]); }};
   const Sums saa{width, height, [&](std::size_t i) { return static_cast<double>(pa[i]) * pa[i]; }};
@@ -99,6 +91,56 @@ Result<VisionCheck> check_vision(const Image& a, const Image& b, const std::vect
   check.ssim = ssim / static_cast<double>(pixels);
   check.noticeable_ratio = static_cast<double>(noticeable) / static_cast<double>(pixels);
   return check;
+}
+
+bool fits(const Image& image, const std::vector<std::uint8_t>& mask) {
+  return !image.empty() && mask.size() == static_cast<std::size_t>(image.width) * image.height &&
+         std::any_of(mask.begin(), mask.end(), [](std::uint8_t m) { return m != 0; });
+}
+
+Error misfit() {
+  return {ErrorCode::BadArgument, "pictures and mask must be of one size, and the mask must not be empty",
+          "vision check"};
+}
+
+}  // namespace
+
+Result<VisionCheck> check_vision(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask,
+                                 const VisionModel& vision) {
+  if (!fits(a, mask) || a.width != b.width || a.height != b.height) return misfit();
+  const auto seen_a = vision.simulate(a);
+  if (!seen_a) return seen_a.error();
+  const auto seen_b = vision.simulate(b);
+  if (!seen_b) return seen_b.error();
+  return compare(*seen_a, *seen_b, mask);
+}
+
+Result<VisionCheck> check_simulation(const ObjectPicture& picture, const VisionModel& vision) {
+  if (!fits(picture.image, picture.mask)) return misfit();
+  const auto seen = vision.simulate(picture.image);
+  if (!seen) return seen.error();
+  auto check = check_vision(picture.image, *seen, picture.mask, vision);
+  if (!check) return check.error();
+  Image rendered{seen->width, seen->height, 1, std::vector<std::uint8_t>(picture.mask.size())};
+  for (std::size_t i = 0; i < rendered.pixels.size(); ++i) rendered.pixels[i] = perception::grey(picture.image, i);
+  check->ssim = compare(rendered, *seen, picture.mask).ssim;
+  return check;
+}
+
+Result<Image> difference_map(const ObjectPicture& picture, const VisionModel& vision) {
+  if (!fits(picture.image, picture.mask)) return misfit();
+  auto map = vision.simulate(picture.image);
+  if (!map) return map.error();
+  constexpr std::uint8_t background = 255;
+  constexpr int same = 232;
+  constexpr int steps = 12;  // grey values per unit of difference: single ones can be told apart
+  for (std::size_t i = 0; i < map->pixels.size(); ++i) {
+    const int difference = std::abs(int{perception::grey(picture.image, i)} - int{map->pixels[i]});
+    map->pixels[i] = picture.mask[i] == 0 ? background
+                     : difference == 0    ? std::uint8_t{same}
+                                          : static_cast<std::uint8_t>(std::max(0, 160 - steps * difference));
+  }
+  return map;
 }
 
 }  // namespace lodestone

@@ -6,17 +6,12 @@
 #include <cmath>
 #include <string>
 
+#include "perception/luminance.h"
+
 namespace lodestone {
 namespace {
 
 Error bad(std::string message) { return Error{ErrorCode::BadArgument, std::move(message), "perceptual metric"}; }
-
-int luminance(const Image& image, std::size_t i) {
-  const std::uint8_t* p = image.pixels.data() + i * image.channels;
-  if (image.channels < 3) return p[0];
-  return static_cast<int>(std::lround(0.2126F * static_cast<float>(p[0]) + 0.7152F * static_cast<float>(p[1]) +
-                                      0.0722F * static_cast<float>(p[2])));
-}
 
 class Sampler {
  public:
@@ -83,7 +78,7 @@ Result<VisibleDetail> visible_detail(const ObjectPicture& picture, const VisionM
   for (std::size_t i = 0; i < pixels; ++i) {
     if (picture.mask[i] == 0) continue;
     ++detail.object_pixels;
-    if (luminance(picture.image, i) != seen->pixels[i]) ++detail.imperceptible_pixels;
+    if (perception::grey(picture.image, i) != seen->pixels[i]) ++detail.imperceptible_pixels;
   }
   if (detail.object_pixels == 0)
     return bad("no pixel of the picture belongs to the object; is it behind the camera or too small?");
@@ -105,6 +100,35 @@ Result<std::vector<DetailSample>> sample_perceptual_metric(const SamplingOptions
     if (auto fault = sampler.take(sampler.widest_gap())) return *std::move(fault);
   }
   return sampler.samples();
+}
+
+Result<std::vector<DetailSample>> sample_perceptual_metric(const std::vector<double>& distances_m,
+                                                           const VisionModel& vision, const RenderAtDistance& render,
+                                                           const Context& context) {
+  if (distances_m.empty() || !(distances_m.front() > 0.0) || !std::is_sorted(distances_m.begin(), distances_m.end())) {
+    return bad("distances must be above 0 and ascend");
+  }
+  Sampler sampler{vision, render, context, static_cast<std::uint32_t>(distances_m.size())};
+  for (const double distance_m : distances_m) {
+    if (auto fault = sampler.take(distance_m)) return *std::move(fault);
+  }
+  return sampler.samples();
+}
+
+std::vector<DetailSample> pool_sides(const std::vector<std::vector<DetailSample>>& sides) {
+  std::vector<DetailSample> pooled = sides.front();
+  double first_pixels = 0.0;
+  for (const auto& side : sides) first_pixels += static_cast<double>(side.front().detail.object_pixels);
+  for (std::size_t i = 0; i < pooled.size(); ++i) {
+    VisibleDetail& sum = pooled[i].detail;
+    sum = {};
+    for (const auto& side : sides) {
+      sum.object_pixels += side[i].detail.object_pixels;
+      sum.imperceptible_pixels += side[i].detail.imperceptible_pixels;
+    }
+    pooled[i].metric = static_cast<double>(sum.object_pixels - sum.imperceptible_pixels) / first_pixels;
+  }
+  return pooled;
 }
 
 }  // namespace lodestone

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "perception/luminance.h"
 #include "perception/wavelet.h"
 
 namespace lodestone {
@@ -97,12 +98,7 @@ Result<Image> VisionModel::simulate(const Image& rendered) const {
   const std::size_t width = rendered.width;
   const std::size_t height = rendered.height;
   std::vector<float> plane(width * height);
-  for (std::size_t i = 0; i < plane.size(); ++i) {
-    const std::uint8_t* p = rendered.pixels.data() + i * rendered.channels;
-    plane[i] = rendered.channels < 3 ? static_cast<float>(p[0])
-                                     : 0.2126F * static_cast<float>(p[0]) + 0.7152F * static_cast<float>(p[1]) +
-                                           0.0722F * static_cast<float>(p[2]);
-  }
+  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = perception::luminance(rendered, i);
   std::vector<std::array<std::size_t, 2>> sizes{{width, height}};
   for (int level = 1; level <= levels_; ++level) {
     const auto [w, h] = sizes.back();
