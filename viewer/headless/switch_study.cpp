@@ -102,7 +102,7 @@ Status Studying::sample_sides(const std::vector<LookedAt>& sides) {
     const SamplingOptions sampling{study_.first_m, options_.reach_ratio * study_.first_m, options_.samples,
                                    options_.sampling};
     auto samples = all.empty() ? sample_perceptual_metric(sampling, vision_, render, part)
-                               : sample_perceptual_metric(distances_m, vision_, render, part);
+                               : sample_metric_at(distances_m, vision_, render, part);
     if (!samples) return samples.error();
     if (all.empty()) {
       for (const DetailSample& sample : *samples) distances_m.push_back(sample.distance_m);

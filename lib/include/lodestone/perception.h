@@ -146,10 +146,10 @@ using RenderAtDistance = std::function<Result<ObjectPicture>(double distance_m)>
                                                                          const Context& context = {});
 
 /// The same at given distances, ascending; the first is d1. For further sides at the distances of the first one.
-[[nodiscard]] Result<std::vector<DetailSample>> sample_perceptual_metric(const std::vector<double>& distances_m,
-                                                                         const VisionModel& vision,
-                                                                         const RenderAtDistance& render,
-                                                                         const Context& context = {});
+[[nodiscard]] Result<std::vector<DetailSample>> sample_metric_at(const std::vector<double>& distances_m,
+                                                                 const VisionModel& vision,
+                                                                 const RenderAtDistance& render,
+                                                                 const Context& context = {});
 
 /// Several sides as one object: pixels of the same distances are added up. Precondition: at least one side, equal
 /// distances.
@@ -167,7 +167,8 @@ struct DetailFit {
 };
 
 /// Least squares: the two factors linearly, the two rates by Nelder-Mead (NLopt) from several starts. `x` are metres
-/// beyond the first sample. Needs at least four samples; a fit with R^2 below 0.95 carries a warning.
+/// beyond the first sample. Needs at least four samples that are not all equal; a fit with R^2 below 0.95 carries a
+/// warning.
 [[nodiscard]] Result<DetailFit> fit_detail(const std::vector<DetailSample>& samples);
 
 /// A plan of discrete levels. Level 0 serves up to d1; level i (1..) from `switch_m[i - 1]` (beyond d1) to the next.

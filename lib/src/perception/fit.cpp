@@ -71,6 +71,12 @@ Result<DetailFit> fit_detail(const std::vector<DetailSample>& samples) {
   const double span_m = data.x.back();
   if (!(span_m > 0.0)) return Error{ErrorCode::BadArgument, "all samples lie at one distance", "perceptual metric"};
 
+  const auto [least, most] = std::minmax_element(data.y.begin(), data.y.end());
+  if (*least == *most) {
+    return Error{ErrorCode::BadArgument, "the metric is the same at all distances, so there is nothing to fit",
+                 "perceptual metric"};
+  }
+
   // Rates as logarithms of 1 / length, lengths from a hundredth of the span to thirty spans.
   const std::vector<double> low(2, std::log(1.0 / (30.0 * span_m)));
   const std::vector<double> high(2, std::log(100.0 / span_m));

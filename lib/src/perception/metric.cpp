@@ -102,9 +102,8 @@ Result<std::vector<DetailSample>> sample_perceptual_metric(const SamplingOptions
   return sampler.samples();
 }
 
-Result<std::vector<DetailSample>> sample_perceptual_metric(const std::vector<double>& distances_m,
-                                                           const VisionModel& vision, const RenderAtDistance& render,
-                                                           const Context& context) {
+Result<std::vector<DetailSample>> sample_metric_at(const std::vector<double>& distances_m, const VisionModel& vision,
+                                                   const RenderAtDistance& render, const Context& context) {
   if (distances_m.empty() || !(distances_m.front() > 0.0) || !std::is_sorted(distances_m.begin(), distances_m.end())) {
     return bad("distances must be above 0 and ascend");
   }

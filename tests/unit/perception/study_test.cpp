@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// The whole way from a model to its plan, through the headless renderer.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include <lodestone/cursor.h>
+#include <lodestone/discrete_levels.h>
+#include <lodestone/edge_collapse.h>
+#include <lodestone/facet_shift.h>
+#include <lodestone/formats.h>
+#include <lodestone/generate.h>
+
+#include "data.h"
+#include "shapes.h"
+#include "viewer/headless/detail_stage.h"
+#include "viewer/headless/plot.h"
+#include "viewer/headless/switch_study.h"
+
+using namespace lodestone;
+
+namespace {
+
+std::shared_ptr<const ProgressiveModel> model_of(const Mesh& mesh) {
+  auto built = build_by_edge_collapse(mesh, {.placement = Placement::Subset});
+  REQUIRE(built.ok());
+  return built->model;
+}
+
+std::shared_ptr<const ProgressiveModel> house() {
+  static const auto model = [] {
+    const auto mesh = generate_house({{.triangles = 12'000, .pixels = Pixels::Skip}});
+    REQUIRE(mesh.ok());
+    return model_of(*mesh);
+  }();
+  return model;
+}
+
+render::StudyOptions small() {
+  render::StudyOptions options;
+  options.display.width_px = 480;
+  options.display.height_px = 384;
+  options.samples = 48;
+  options.levels = 4;
+  return options;
+}
+
+// Falls from one ninth of the samples to the next, on the mean: small ripples of single pixels do not count.
+bool falls(const std::vector<DetailSample>& samples) {
+  const std::size_t window = std::max<std::size_t>(1, samples.size() / 9);
+  double before = 2.0;
+  for (std::size_t i = 0; i + window <= samples.size(); i += window) {
+    double mean = 0.0;
+    for (std::size_t k = 0; k < window; ++k) mean += samples[i + k].metric / static_cast<double>(window);
+    if (mean >= before) return false;
+    before = mean;
+  }
+  return true;
+}
+
+bool same(const render::SwitchStudy& a, const render::SwitchStudy& b) {
+  if (a.samples.size() != b.samples.size() || a.rendered.pixels != b.rendered.pixels) return false;
+  for (std::size_t i = 0; i < a.samples.size(); ++i) {
+    if (a.samples[i].metric != b.samples[i].metric) return false;
+  }
+  return a.plan.switch_m == b.plan.switch_m && a.plan.cost == b.plan.cost && a.measured.levels == b.measured.levels &&
+         a.vision.ssim == b.vision.ssim;
+}
+
+// What must hold on a real building, seen from its front, with four levels as in the paper.
+void check_building(const std::string& id) {
+  LODESTONE_REQUIRE_DATA(root);
+  const auto loaded = read_mesh(root / "buildings" / id / (id + ".obj"), {.textures = LoadTextures::Reference});
+  REQUIRE(loaded.ok());
+  const auto built = build_by_facet_shift(loaded->mesh);
+  REQUIRE(built.ok());
+  render::StudyOptions options;
+  options.samples = 64;
+  options.levels = 4;
+  const auto study = render::study_switch_distances(built->model, options);
+  REQUIRE(study.ok());
+  INFO(id << ": R^2 " << study->fit.r_square << ", SSIM " << study->vision.ssim << ", cost " << study->plan.cost);
+  CHECK(falls(study->samples));
+  CHECK(study->fit.r_square >= 0.99);
+  CHECK(study->vision.ssim >= 0.99);
+  for (const std::size_t other : {0U, 1U, 3U}) {  // equal intervals of 1.46 and 2.92 d1, exponential 2
+    INFO(study->alternatives[other].name << ", cost " << study->alternatives[other].cost);
+    CHECK(study->plan.cost < study->alternatives[other].cost);
+    CHECK(study->plan.redundancy < study->alternatives[other].redundancy);
+  }
+  CHECK(study->measured_check.worst_noticeable_ratio() <= 0.01);
+  CHECK(study->same_cost.front().cost <= study->measured.cost);
+  CHECK(study->same_cost_checks.front().worst_noticeable_ratio() > study->measured_check.worst_noticeable_ratio());
+}
+
+}  // namespace
+
+TEST_CASE("real building 4018215: the metric falls, the plan is cheap, its levels look like the source") {
+  check_building("4018215");
+}
+TEST_CASE("real building 4018267: the metric falls, the plan is cheap, its levels look like the source") {
+  check_building("4018267");
+}
+TEST_CASE("real building 4018210: the metric falls, the plan is cheap, its levels look like the source") {
+  check_building("4018210");
+}
+TEST_CASE("real building 4018128: the metric falls, the plan is cheap, its levels look like the source") {
+  check_building("4018128");
+}
+TEST_CASE("real building 4018273: the metric falls, the plan is cheap, its levels look like the source") {
+  check_building("4018273");
+}
+
+TEST_CASE("a generated house: falling metric, good fit, levels that look like the source, the same numbers again") {
+  const auto study = render::study_switch_distances(house(), small());
+  REQUIRE(study.ok());
+  CHECK(falls(study->samples));
+  CHECK(study->fit.r_square >= 0.99);
+  CHECK(study->plan.switch_m.size() == 4);
+  for (const SwitchPlan& other : study->alternatives) CHECK(study->plan.redundancy <= other.redundancy);
+  CHECK(study->measured_check.worst_noticeable_ratio() <= 0.01);
+  CHECK(std::is_sorted(study->measured.levels.rbegin(), study->measured.levels.rend()));
+  for (std::size_t i = 0; i < 4; ++i) CHECK(study->measured.levels[i] >= study->plan.levels[i]);
+  for (const SwitchPlan& plan : study->same_cost) CHECK(plan.cost <= study->measured.cost);
+  // Whatever the number of the renderer's threads (of llvmpipe; it is asked for when a context is made).
+  for (const char* threads : {"0", "1", "8"}) {
+    ::setenv("LP_NUM_THREADS", threads, 1);
+    const auto again = render::study_switch_distances(house(), small());
+    ::unsetenv("LP_NUM_THREADS");
+    REQUIRE(again.ok());
+    CHECK(same(*study, *again));
+  }
+}
+
+TEST_CASE("several sides give one plan, within what each side alone would have") {
+  render::StudyOptions options = small();
+  options.samples = 16;
+  options.sides = {"all", "45"};
+  const auto study = render::study_switch_distances(house(), options);
+  REQUIRE(study.ok());
+  REQUIRE(study->sides.size() == 5);
+  double least = 1e9;
+  double most = 0.0;
+  for (const render::SideStudy& side : study->sides) {
+    least = std::min(least, side.plan.switch_m[2]);
+    most = std::max(most, side.plan.switch_m[2]);
+  }
+  CHECK(study->plan.switch_m[2] >= 0.95 * least);
+  CHECK(study->plan.switch_m[2] <= 1.05 * most);
+  CHECK(study->sides[4].side.azimuth_rad == Approx(M_PI / 4.0));
+}
+
+TEST_CASE("adaptive samples give the same fit with fewer pictures") {
+  render::StudyOptions options = small();
+  const auto even = render::study_switch_distances(house(), options);
+  options.sampling = Sampling::Adaptive;
+  options.samples = 24;
+  const auto adaptive = render::study_switch_distances(house(), options);
+  REQUIRE(even.ok());
+  REQUIRE(adaptive.ok());
+  CHECK(adaptive->fit.r_square >= 0.99);
+  CHECK(adaptive->plan.switch_m[1] == Approx(even->plan.switch_m[1]).epsilon(0.35));
+}
+
+TEST_CASE("pictures for the metric are flat, hard-edged and shrink; what cannot be seen is refused") {
+  auto stage = render::DetailStage::create(house(), small().display);
+  REQUIRE(stage.ok());
+  const Sides sides = find_sides(house()->extract(house()->record_count()));
+  const double first_m = first_distance_m(sides.bounds.radius_m, small().display.fov_y_rad);
+  std::size_t before = std::size_t{480} * 384;
+  for (const double times : {1.0, 2.0, 8.0}) {
+    const auto picture = (*stage)->picture(sides.front_rad, times * first_m);
+    REQUIRE(picture.ok());
+    const auto pixels = static_cast<std::size_t>(std::count(picture->mask.begin(), picture->mask.end(), 1));
+    CHECK(pixels > 0);
+    CHECK(pixels < before);
+    before = pixels;
+  }
+  // Nothing of the object is cut off where it fills the picture.
+  const auto full = (*stage)->picture(sides.front_rad, first_m);
+  for (std::uint32_t x = 0; x < 480; ++x) {
+    CHECK(full->mask[x] == 0);
+    CHECK(full->mask[std::size_t{383} * 480 + x] == 0);
+  }
+  for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    CHECK_FALSE((*stage)->picture(0.0, wrong).ok());
+  }
+  CHECK_FALSE((*stage)->picture(std::nan(""), 10.0).ok());
+  // Smaller than a pixel.
+  const VisionModel vision{small().display};
+  const auto tiny = (*stage)->picture(0.0, 1e7 * first_m);
+  REQUIRE(tiny.ok());
+  CHECK_FALSE(visible_detail(*tiny, vision).ok());
+}
+
+TEST_CASE("options out of range and models without faces are errors that say what is wrong") {
+  const auto refused = [](const render::StudyOptions& options) {
+    const auto study = render::study_switch_distances(house(), options);
+    return !study.ok() && study.error().code == ErrorCode::BadArgument && !study.error().message.empty();
+  };
+  render::StudyOptions options = small();
+  options.sides = {"top"};
+  CHECK(refused(options));
+  options = small();
+  options.sides = {};
+  CHECK(refused(options));
+  options = small();
+  options.display.dots_per_inch = std::nan("");
+  CHECK(refused(options));
+  options = small();
+  options.display.fov_y_rad = 0.0;
+  CHECK(refused(options));
+  options = small();
+  options.display.width_px = 0;
+  CHECK(refused(options));
+  options = small();
+  options.samples = 2;
+  CHECK(refused(options));
+  options = small();
+  options.supersample = 9;
+  CHECK(refused(options));
+  std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  const auto cancelled = render::study_switch_distances(house(), small(), context);
+  REQUIRE_FALSE(cancelled.ok());
+  CHECK(cancelled.error().code == ErrorCode::Cancelled);
+}
+
+TEST_CASE("a cursor takes the eye as its target: coarser with distance, half a pixel off at most") {
+  const auto model = house();
+  Cursor cursor{model, {.motion = Motion::Hard}};
+  std::uint32_t before = model->triangle_count() + 1;
+  for (const double distance_m : {30.0, 100.0, 300.0, 1000.0}) {
+    cursor.set_target(Target::perceptual(distance_m, 1710.0));
+    cursor.step({}, 0.0);
+    CHECK(cursor.error_m() <= imperceptible_error_m(distance_m, 1710.0));
+    CHECK(cursor.triangle_count() < before);
+    before = cursor.triangle_count();
+  }
+}
+
+TEST_CASE("a plan reads back as it was written, and a broken one is refused") {
+  const auto folder = test::scratch_folder("level_plan");
+  const LevelPlan plan{.levels = {{0.0, 10, 100, 0.0}, {31.25, 7, 40, 0.125}, {1000.0 / 3.0, 7, 40, 0.125}},
+                       .last_m = 20000.0,
+                       .radius_m = 7.5,
+                       .focal_px = 1710.38,
+                       .height_px = 1024.0,
+                       .width_px = 1280.0};
+  REQUIRE(write_level_plan(plan, folder / "plan.json").ok());
+  const auto again = read_level_plan(folder / "plan.json");
+  REQUIRE(again.ok());
+  REQUIRE(again->levels.size() == 3);
+  CHECK(again->levels[2].from_m == plan.levels[2].from_m);
+  CHECK(again->levels[1].triangles == 40);
+  CHECK(again->last_m == plan.last_m);
+  CHECK_FALSE(write_levels(*house(), *again, folder / "levels").ok());  // of another model
+  CHECK_FALSE(read_level_plan(folder / "none.json").ok());
+  LevelPlan wrong = plan;
+  std::swap(wrong.levels[1], wrong.levels[2]);
+  wrong.levels[1].from_m = 1e9;
+  CHECK_FALSE(write_level_plan(wrong, folder / "wrong.json").ok());
+  for (const char* text : {"", "[]", "{}", R"({"format":"lodestone level plan","version":1})",
+                           R"({"format":"lodestone level plan","version":1,"last_m":1,"radius_m":1,"focal_px":1,
+                              "width_px":1,"height_px":1,"levels":[{"from_m":"x"}]})"}) {
+    std::ofstream{folder / "bad.json"} << text;
+    const auto bad = read_level_plan(folder / "bad.json");
+    REQUIRE_FALSE(bad.ok());
+    CHECK(bad.error().code == ErrorCode::BadData);
+  }
+}
+
+TEST_CASE("a plot shows its curves inside its frame") {
+  render::Plot plot{.title = {}, .x_title = "x", .y_title = "y", .x_axis = render::Axis::Logarithmic};
+  plot.curves.push_back({"up", render::Curve::Style::Line, {255, 0, 0}, {{1.0, 0.0}, {100.0, 1.0}}});
+  plot.curves.push_back({"left out", render::Curve::Style::Dots, {0, 0, 255}, {{-1.0, 0.5}, {std::nan(""), 1.0}}});
+  const Image image = render::draw_plot(plot);
+  const auto count = [&](std::uint32_t from_x, std::uint32_t to_x, std::uint32_t from_y, std::uint32_t to_y) {
+    int red = 0;
+    for (std::uint32_t y = from_y; y < to_y; ++y) {
+      for (std::uint32_t x = from_x; x < to_x; ++x) {
+        const std::uint8_t* p = image.at(x, y);
+        if (p[0] > 200 && p[1] < 60 && p[2] < 60) ++red;
+      }
+    }
+    return red;
+  };
+  CHECK(count(0, 900, 0, 560) > 700);
+  CHECK(count(84, 300, 350, 510) > 100);                  // begins low on the left
+  CHECK(count(600, 880, 350, 560) == 0);                  // and has risen on the right
+  CHECK(render::draw_plot(render::Plot{}).width == 900);  // no curves: an empty frame
+}
