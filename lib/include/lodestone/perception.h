@@ -193,8 +193,9 @@ struct SwitchPlan {
 [[nodiscard]] SwitchPlan design_switches_by_grid(const DetailFit& fit, std::uint32_t levels, double last_m,
                                                  std::uint32_t grid = 1500);
 
-/// Fewest levels after which one more would save less than `least_gain` of the redundancy of a single level.
-[[nodiscard]] std::uint32_t choose_level_count(const DetailFit& fit, double last_m, double least_gain = 0.05);
+/// Fewest levels after which one more would save less than `least_gain` of the redundancy that is left. A share of what
+/// is left, because the second level alone saves nearly all of the first's; the default gives the paper's four.
+[[nodiscard]] std::uint32_t choose_level_count(const DetailFit& fit, double last_m, double least_gain = 0.4);
 
 /// Levels at equal distances, and at d1 * factor^i, as in Table 3; distances beyond d1.
 [[nodiscard]] SwitchPlan equal_intervals(const DetailFit& fit, std::uint32_t levels, double interval_m, double last_m);

@@ -106,11 +106,10 @@ SwitchPlan design_switches_by_grid(const DetailFit& fit, std::uint32_t levels, d
 }
 
 std::uint32_t choose_level_count(const DetailFit& fit, double last_m, double least_gain) {
-  const double single = redundancy(fit, {0.0}, last_m);
-  double before = single;
+  double before = redundancy(fit, {0.0}, last_m);
   for (std::uint32_t levels = 2; levels <= max_levels; ++levels) {
     const auto plan = design_switches(fit, levels, last_m);
-    if (!plan || before - plan->redundancy < least_gain * single) return levels - 1;
+    if (!plan || before - plan->redundancy < least_gain * before) return levels - 1;
     before = plan->redundancy;
   }
   return max_levels;

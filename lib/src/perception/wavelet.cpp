@@ -78,9 +78,69 @@ void transform(const Bundle& x, std::vector<float>& room, bool is_forward) {
   }
 }
 
+// A row with its even and odd samples side by side, so that every step runs over contiguous floats.
+struct SplitRow {
+  std::vector<float> even, odd;
+
+  void resize(std::size_t count) {
+    even.resize((count + 1) / 2);
+    odd.resize(count / 2);
+  }
+  // odd[i] += factor * (even before + even after), mirrored at the end.
+  void lift_odd(float factor) {
+    const std::size_t inner = even.size() - 1;
+    for (std::size_t i = 0; i < inner; ++i) odd[i] += factor * (even[i] + even[i + 1]);
+    if (odd.size() > inner) odd[inner] += factor * (even[inner] + even[inner]);
+  }
+  void lift_even(float factor) {
+    even[0] += factor * (odd[0] + odd[0]);
+    for (std::size_t i = 1; i < odd.size(); ++i) even[i] += factor * (odd[i - 1] + odd[i]);
+    if (even.size() > odd.size()) even[odd.size()] += factor * (odd.back() + odd.back());
+  }
+  void multiply(float even_factor, float odd_factor) {
+    for (float& v : even) v *= even_factor;
+    for (float& v : odd) v *= odd_factor;
+  }
+};
+
+void forward_row(float* data, std::size_t count, SplitRow& row) {
+  row.resize(count);
+  for (std::size_t i = 0; i < row.odd.size(); ++i) {
+    row.even[i] = data[2 * i];
+    row.odd[i] = data[2 * i + 1];
+  }
+  if (count % 2 == 1) row.even.back() = data[count - 1];
+  row.lift_odd(predict_1);
+  row.lift_even(update_1);
+  row.lift_odd(predict_2);
+  row.lift_even(update_2);
+  row.multiply(1.0F / scale, scale);
+  std::copy(row.odd.begin(), row.odd.end(), std::copy(row.even.begin(), row.even.end(), data));
+}
+
+void inverse_row(float* data, std::size_t count, SplitRow& row) {
+  row.resize(count);
+  std::copy_n(data, row.even.size(), row.even.begin());
+  std::copy_n(data + row.even.size(), row.odd.size(), row.odd.begin());
+  row.multiply(scale, 1.0F / scale);
+  row.lift_even(-update_2);
+  row.lift_odd(-predict_2);
+  row.lift_even(-update_1);
+  row.lift_odd(-predict_1);
+  for (std::size_t i = 0; i < row.odd.size(); ++i) {
+    data[2 * i] = row.even[i];
+    data[2 * i + 1] = row.odd[i];
+  }
+  if (count % 2 == 1) data[count - 1] = row.even.back();
+}
+
 void rows(std::vector<float>& plane, std::size_t stride, std::size_t width, std::size_t height, bool is_forward) {
-  std::vector<float> room;
-  for (std::size_t y = 0; y < height; ++y) transform({plane.data() + y * stride, width, 1, 1}, room, is_forward);
+  if (width < 2) return;
+  SplitRow row;
+  for (std::size_t y = 0; y < height; ++y) {
+    float* data = plane.data() + y * stride;
+    is_forward ? forward_row(data, width, row) : inverse_row(data, width, row);
+  }
 }
 
 void columns(std::vector<float>& plane, std::size_t stride, std::size_t width, std::size_t height, bool is_forward) {

@@ -97,6 +97,7 @@ TEST_CASE("more levels save less and less, and their number is chosen by that") 
   }
   CHECK(choose_level_count(fit, end_m, 0.5) <= choose_level_count(fit, end_m, 1e-4));
   CHECK(choose_level_count(fit, end_m, 2.0) == 1);
+  CHECK(choose_level_count(fit, end_m) == 4);  // as many as the paper takes
 }
 
 TEST_CASE("the fit finds the paper's four numbers in their own samples, and says when it is poor") {
