@@ -74,7 +74,7 @@ struct SweepOptions {
   bool and_back = false;  ///< half of the frames there, half back
   SweepStyle style = SweepStyle::Morph;
   std::uint32_t discrete_levels = 5;  ///< Discrete, Fade: from `from_ratio` to `to_ratio` in equal factors
-  double morph_seconds = 1.0;         ///< Morph: time that a record takes
+  double morph_seconds = 2.0;         ///< Morph: time that a record takes
   double fade_seconds = 0.5;          ///< Fade: time that a switch takes
   /// Supersampled by default: where it is not, an edge that glides over a column of pixels jumps by a quarter of the
   /// contrast, and that counts as a pop.

@@ -51,8 +51,12 @@ class Fields {
   template <class T>
   void operator()(std::vector<T>& list) {
     const std::size_t size = count(list.size());
-    if constexpr (loading) list.resize(size);
-    for (T& item : list) (*this)(item);
+    if constexpr (loading) {
+      // One by one: elements are larger in memory than in the file, and the bytes may end long before the count.
+      for (std::size_t i = 0; i < size; ++i) (*this)(list.emplace_back());
+    } else {
+      for (T& item : list) (*this)(item);
+    }
   }
   void operator()(Header& h) {
     Surroundings& s = h.surroundings;

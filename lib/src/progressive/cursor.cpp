@@ -296,6 +296,7 @@ void Cursor::clear_dirty() noexcept {
 
 bool Cursor::vertex_in_use(VertexId slot) const noexcept { return slot < state_->at.vertices; }
 bool Cursor::face_in_use(FaceId slot) const noexcept {
+  if (slot >= model_->face_slot_count()) return false;
   const auto draws_all = draws();
   const auto above = std::upper_bound(draws_all.begin(), draws_all.end(), 3 * slot,
                                       [](CornerId c, const DrawRange& draw) { return c < draw.first_index; });

@@ -10,6 +10,9 @@
 namespace lodestone::progressive {
 namespace {
 
+// Starts and ends at rest.
+[[nodiscard]] float smooth(float progress) noexcept { return progress * progress * (3.0F - 2.0F * progress); }
+
 [[nodiscard]] glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept {
   const float square = glm::dot(v, v);
   return square > 1e-12F ? v / std::sqrt(square) : otherwise;
@@ -159,7 +162,7 @@ void Geomorph::add_moves(const StackPosition& at, DirtyMap& dirty) noexcept {
   const std::uint32_t words = data_->value_words();
   StackPosition walk = at;
   for (std::uint32_t b = count_; b-- > 0;) {
-    const float weight = batches_[b].progress;
+    const float weight = smooth(batches_[b].progress);
     while (walk.level > batches_[b].begin) {
       const RecordView record = walk_down(*data_, walk, words);
       const std::uint32_t* values = record.values;
@@ -185,7 +188,7 @@ void Geomorph::add_moves(const StackPosition& at, DirtyMap& dirty) noexcept {
 // Slots ascend, and a vertex merges into a lower one, so where that is drawn is known by then.
 void Geomorph::merge_vertices(const StackPosition& at) noexcept {
   for (std::uint32_t b = 0; b < count_; ++b) {
-    const float weight = batches_[b].progress;
+    const float weight = smooth(batches_[b].progress);
     const std::uint32_t end = b + 1 < count_ ? batches_[b + 1].first_vertex : at.vertices;
     if (weight <= 0.0F) continue;
     for (VertexId slot = batches_[b].first_vertex; slot < end; ++slot) {

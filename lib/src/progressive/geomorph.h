@@ -50,8 +50,8 @@ class Geomorph {
 
  private:
   static constexpr std::uint32_t capacity = 256;
-  // A batch that has come no further than this takes in the records of the next step, which jump by as much of their
-  // way: it matters only above 128 steps in `morph_seconds`, where it bounds the number of batches.
+  // A batch that has come no further than this takes in the records of the next step: with the smooth start and end of
+  // the motion they jump by 0.02 % of their way.
   static constexpr float join_progress = 1.0F / 128.0F;
 
   void split_at(const StackPosition& at, Level target) noexcept;
