@@ -6,8 +6,6 @@
 //
 // Prints one JSON object. Stages are 1/4, 1/16 and 1/64 of the triangles (the paper does not tell its own). Simplifying
 // is the whole build, records included, on one thread; restoring is a cursor going from the stage to the source.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -16,15 +14,11 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/generate.h>
 
+#include "thread_clock.h"
+
 namespace {
 
 using namespace lodestone;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct PaperStage {
   double simplify_s, restore_s;

@@ -11,8 +11,6 @@
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -22,17 +20,13 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/formats.h>
 
+#include "thread_clock.h"
+
 namespace {
 
 using namespace lodestone;
 
 constexpr int runs = 5;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 template <class Work>
 double best_seconds(Work&& work) {

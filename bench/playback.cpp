@@ -7,8 +7,6 @@
 // records/s of whole sweeps both ways, times of random seeks over 1 % of the stack, bytes per source vertex of model
 // and cursor, and the time of one step of a morphing sweep (full to coarse in 300 frames). Rates are the best of the
 // sweeps, in processor time of the thread, which a busy machine disturbs least.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -21,15 +19,11 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/formats.h>
 
+#include "thread_clock.h"
+
 namespace {
 
 using namespace lodestone;
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 template <class Work>
 double seconds_of(Work&& work) {

@@ -43,7 +43,7 @@ struct EdgeCollapseOptions {
   /// Stop before the error exceeds this; metres.
   double max_error_m = std::numeric_limits<double>::infinity();
   /// Weight of one unit of uv, normal and colour against the mesh's diagonal; 0 switches one off. Larger keeps looks
-  /// longer at the price of shape. Defaults were tuned on textured outcrops (docs/edge_collapse.md).
+  /// longer at the price of shape. Only uv was measured, on an outcrop (docs/edge_collapse.md).
   double uv_weight = 1.0;
   double normal_weight = 0.1;
   double color_weight = 0.1;
