@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Tiles of 257 x 257 posts cut from an SRTM file, one thread, greedy insertion at 1, 5 and 10 m: samples per second of
+// processor time, triangles, true error. bench/terrain_delatin.mjs does the same with npm's delatin.
+//
+//   bench_terrain N30E079.hgt
+#include <lodestone/terrain.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "terrain/chains.h"
+#include "terrain/error.h"
+#include "terrain/greedy.h"
+#include "thread_clock.h"
+
+namespace {
+
+using namespace lodestone;
+using namespace lodestone::terrain;
+
+// Big-endian 16-bit heights, north first; voids become the post before them.
+std::vector<TileLattice> read_tiles(const std::string& file) {
+  std::ifstream stream{file, std::ios::binary};
+  const std::vector<char> bytes{std::istreambuf_iterator<char>{stream}, {}};
+  const auto side = static_cast<int>(std::sqrt(static_cast<double>(bytes.size()) / 2.0));
+  std::vector<float> heights(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  float last = 0.0F;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const auto value = static_cast<std::int16_t>(static_cast<unsigned char>(bytes[2 * i]) << 8U |
+                                                 static_cast<unsigned char>(bytes[2 * i + 1]));
+    heights[i] = last = value == -32768 ? last : static_cast<float>(value);
+  }
+  std::vector<TileLattice> tiles;
+  for (int row = 0; row + size < side; row += size) {
+    for (int column = 0; column + size < side; column += size) {
+      TileLattice& lattice = tiles.emplace_back();
+      for (int y = -1; y <= size + 1; ++y) {
+        for (int x = -1; x <= size + 1; ++x) {
+          const int i = std::clamp(row + size - y, 0, side - 1), j = std::clamp(column + x, 0, side - 1);
+          lattice.set(
+              x, y,
+              heights[static_cast<std::size_t>(i) * static_cast<std::size_t>(side) + static_cast<std::size_t>(j)]);
+        }
+      }
+    }
+  }
+  return tiles;
+}
+
+void bench(const std::vector<TileLattice>& tiles, double tolerance_m) {
+  const double step_m = std::max(0.25, std::exp2(std::floor(std::log2(tolerance_m / 32.0))));
+  std::size_t triangles = 0, border = 0;
+  double seconds = 0.0, worst_m = 0.0;
+  for (const TileLattice& lattice : tiles) {
+    const double start = thread_seconds();
+    std::vector<Post> chain;
+    for (const Side side : all_sides) {
+      for (const int t : border_chain(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(post_of(side, t));
+    }
+    const auto [tin, error] = greedy_insertion(lattice, chain, {.tolerance_m = tolerance_m, .step_m = step_m});
+    seconds += thread_seconds() - start;
+    worst_m = std::max(worst_m, error.max_m);
+    triangles += tin.triangles.size() / 3;
+    border += chain.size();
+  }
+  const double samples = static_cast<double>(tiles.size()) * size * size;
+  std::printf(
+      "{\"peer\": \"lodestone\", \"tolerance_m\": %g, \"tiles\": %zu, \"triangles\": %zu, \"border_vertices\": %zu, "
+      "\"true_error_m\": %.4f, \"samples_per_second\": %.0f}\n",
+      tolerance_m, tiles.size(), triangles, border, worst_m, samples / seconds);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: bench_terrain FILE.hgt\n");
+    return 1;
+  }
+  const std::vector<TileLattice> tiles = read_tiles(argv[1]);
+  for (const double tolerance_m : {1.0, 5.0, 10.0}) bench(tiles, tolerance_m);
+  return 0;
+}

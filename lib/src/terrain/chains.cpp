@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Based on: the border constraint of Campos et al. 2020, section 4.
+// Differs: no border is inherited from a tile that happens to be built first. A chain is made by halving: an interval
+// whose posts stand off its chord by more than the tolerance is cut in the middle. A finer zoom sees the same posts and
+// more of them, under a smaller tolerance, so it cuts wherever the zoom above does: chains are nested without knowing
+// of each other. (Free choice of vertices needs some fewer, but is not nested.)
+#include "terrain/chains.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lodestone::terrain {
+namespace {
+
+// What cannot be seen of the tolerance when cutting: clients move vertices by up to 1/256 post.
+constexpr double share_for_chords = 0.9;
+
+class Chain {
+ public:
+  Chain(const TileLattice& lattice, Side side, const ChainOptions& options)
+      : lattice_{lattice}, side_{side}, options_{options} {
+    for (int t = 0; t < size; ++t) {
+      const Post a = post_of(side, t);
+      const bool along_x = side == Side::South || side == Side::North;
+      inner_[t] = lattice.cell(a.x, a.y);
+      outer_[t] = along_x ? lattice.cell(a.x, a.y - 1) : lattice.cell(a.x - 1, a.y);
+    }
+  }
+
+  [[nodiscard]] std::vector<int> vertices() {
+    int begin = 0;
+    for (int t = 0; t <= size; ++t) {
+      if (!required(t)) continue;
+      // All segments between required posts are alike.
+      if (t > 0 && live(t - 1)) divide(begin, t);
+      if (touches_live(t)) vertices_.push_back(t);
+      begin = t;
+    }
+    return std::move(vertices_);
+  }
+
+ private:
+  [[nodiscard]] bool live(int segment) const { return inner_[segment] || outer_[segment]; }
+  [[nodiscard]] bool touches_live(int t) const { return (t > 0 && live(t - 1)) || (t < size && live(t)); }
+  [[nodiscard]] bool required(int t) const {
+    if (t == 0 || t == size) return true;
+    if (inner_[t - 1] != inner_[t] || outer_[t - 1] != outer_[t]) return true;
+    return t % (size / options_.divisions) == 0;
+  }
+  [[nodiscard]] double height_m(int t) const {
+    const Post p = post_of(side_, t);
+    return lattice_.at(p.x, p.y);
+  }
+  [[nodiscard]] double vertex_height_m(int t) const {
+    return snapped_m(lattice_.vertex_height_m(post_of(side_, t)), options_.step_m);
+  }
+
+  void divide(int a, int b) {
+    if (b - a < 2 || !must_cut(a, b)) return;
+    // The roundest number inside: the middle where a and b are ends of such an interval themselves.
+    const auto differing = static_cast<unsigned>(a ^ (b - 1));
+    const int bit = static_cast<int>(std::bit_floor(differing));
+    const int middle = (b - 1) & ~(bit - 1);
+    divide(a, middle);
+    vertices_.push_back(middle);
+    divide(middle, b);
+  }
+
+  // Whether posts stand off the chord between two posts, or off the edge that clients will draw.
+  [[nodiscard]] bool must_cut(int a, int b) const {
+    const double from_m = height_m(a);
+    const double rise_m = (height_m(b) - from_m) / (b - a);
+    const double drawn_a = a + quantized_shift(a);
+    const double drawn_m = vertex_height_m(a);
+    const double drawn_rise_m = (vertex_height_m(b) - drawn_m) / (b + quantized_shift(b) - drawn_a);
+    for (int t = a + 1; t < b; ++t) {
+      const double h = height_m(t);
+      if (std::fabs(h - (from_m + rise_m * (t - a))) > share_for_chords * options_.tolerance_m) return true;
+      const double off_m = std::fabs(h - (drawn_m + drawn_rise_m * (t - drawn_a)));
+      if (off_m > options_.tolerance_m + 0.5 * options_.step_m) return true;
+    }
+    return false;
+  }
+
+  const TileLattice& lattice_;
+  Side side_;
+  ChainOptions options_;
+  std::array<bool, size> inner_{};  // per segment: the cell east or north of it has data
+  std::array<bool, size> outer_{};
+  std::vector<int> vertices_;
+};
+
+}  // namespace
+
+std::vector<int> border_chain(const TileLattice& lattice, Side side, const ChainOptions& options) {
+  return Chain{lattice, side, options}.vertices();
+}
+
+double border_detail_m(const TileLattice& lattice, Side side) {
+  double most_m = 0.0;
+  const auto height_m = [&](int t) { return lattice.at(post_of(side, t).x, post_of(side, t).y); };
+  for (int t = 1; t < size; t += 2) {
+    const double off_m = std::fabs(height_m(t) - 0.5 * (static_cast<double>(height_m(t - 1)) + height_m(t + 1)));
+    if (off_m > most_m) most_m = off_m;  // false for posts without data
+  }
+  return most_m;
+}
+
+}  // namespace lodestone::terrain

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+// Based on: Campos et al. 2020, sections 4 (tiles and zooms), 4.4.3 (parameters by zoom), 4.4.4 (globes).
+// Differs: no schedule. One pass over the finest zoom finds which tiles have data and how high they are; from then on a
+// tile needs nothing but its own posts.
+#include <lodestone/terrain.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "base/parallel.h"
+#include "terrain/ticks.h"
+#include "terrain/tile_builder.h"
+
+namespace lodestone {
+namespace {
+
+constexpr int size = tile_intervals;
+constexpr double equator_radius_m = 6378137.0;
+
+double post_spacing_m(std::uint32_t zoom) {
+  return std::ldexp(std::numbers::pi * equator_radius_m / size, -static_cast<int>(zoom));
+}
+
+double power_of_two_up(double value) { return std::exp2(std::ceil(std::log2(value))); }
+double power_of_two_down(double value) { return std::exp2(std::floor(std::log2(value))); }
+
+bool before(const TileInfo& a, const TileInfo& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
+
+Error bad(std::string message) { return {ErrorCode::BadArgument, std::move(message), ""}; }
+
+}  // namespace
+
+class TerrainPlanner {
+ public:
+  TerrainPlanner(const HeightSource& source, const TerrainOptions& options, const Context& context)
+      : source_{source}, options_{options}, context_{context} {}
+
+  [[nodiscard]] Result<TerrainPyramid> plan() {
+    if (Status status = check(); !status) return status.error();
+    TerrainPyramid pyramid;
+    pyramid.source_ = &source_;
+    pyramid.options_ = options_;
+    pyramid.zooms_.resize(max_zoom_ + 1);
+    if (Status status = scan_finest(pyramid.zooms_.back().tiles); !status) return status.error();
+    for (std::uint32_t z = max_zoom_; z > 0; --z) gather_parents(pyramid.zooms_[z].tiles, pyramid.zooms_[z - 1].tiles);
+    add_roots(pyramid.zooms_.front().tiles);
+    if (Status status = read_poles(pyramid); !status) return status.error();
+    for (std::uint32_t z = 0; z <= max_zoom_; ++z) choose_numbers(z, pyramid.zooms_[z]);
+    return pyramid;
+  }
+
+ private:
+  [[nodiscard]] Status check() {
+    max_zoom_ = options_.max_zoom == none ? source_.native_zoom() : options_.max_zoom;
+    if (max_zoom_ > max_terrain_zoom) return bad("zooms go up to " + std::to_string(max_terrain_zoom));
+    for (const double error_m : options_.max_error_m) {
+      if (!(error_m > 0.0) || !std::isfinite(error_m)) return bad("the largest error must be above 0");
+    }
+    for (const std::uint32_t divisions : options_.grid_divisions) {
+      if (!std::has_single_bit(divisions) || divisions > 64) return bad("grid divisions are 1, 2, 4, ... 64");
+    }
+    return Done{};
+  }
+
+  // Tiles of the finest zoom that the source's bounds touch, each looked at once.
+  [[nodiscard]] Status scan_finest(std::vector<TileInfo>& found) {
+    const GeoBox box = source_.bounds();
+    const double tile_deg = std::ldexp(180.0, -static_cast<int>(max_zoom_));
+    const auto columns = static_cast<std::int64_t>(std::ldexp(2.0, static_cast<int>(max_zoom_)));
+    const auto west = static_cast<std::int64_t>(std::floor((box.west_deg + 180.0) / tile_deg));
+    const auto east = static_cast<std::int64_t>(std::ceil((box.east_deg + 180.0) / tile_deg));
+    const auto south =
+        std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor((box.south_deg + 90.0) / tile_deg)));
+    const auto north = std::min(columns / 2, static_cast<std::int64_t>(std::ceil((box.north_deg + 90.0) / tile_deg)));
+    const std::int64_t width = std::min(east - west, columns);
+    if (width <= 0 || north <= south) return Error{ErrorCode::BadData, "the source covers nothing", ""};
+    constexpr std::int64_t most_tiles = 1 << 26;
+    if (width > most_tiles / (north - south)) {
+      return Error{ErrorCode::TooLarge, "more than 67 million tiles at zoom " + std::to_string(max_zoom_), ""};
+    }
+    const auto count = static_cast<std::size_t>(width * (north - south));
+    std::vector<TileInfo> tiles(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int64_t x = west + static_cast<std::int64_t>(i) % width,
+                         y = south + static_cast<std::int64_t>(i) / width;
+      tiles[i].x = static_cast<std::uint32_t>((x % columns + columns) % columns);
+      tiles[i].y = static_cast<std::uint32_t>(y);
+    }
+    std::vector<Status> statuses(count, Done{});
+    std::atomic<std::size_t> done{0};
+    parallel_for_each(count, 1, context_, [&](std::size_t i) {
+      statuses[i] = scan(tiles[i]);
+      ticks_.tick(context_, "plan", static_cast<double>(++done) / static_cast<double>(count));
+    });
+    if (context_.cancelled()) return Error{ErrorCode::Cancelled, "cancelled", ""};
+    for (const Status& status : statuses) {
+      if (!status) return status.error();
+    }
+    std::erase_if(tiles, [](const TileInfo& tile) { return !tile.has_data; });
+    if (tiles.empty())
+      return Error{ErrorCode::BadData, "there is no data in it: every sample is marked as missing", ""};
+    std::sort(tiles.begin(), tiles.end(), before);
+    found = std::move(tiles);
+    return Done{};
+  }
+
+  [[nodiscard]] Status scan(TileInfo& tile) const {
+    constexpr std::size_t side = size + 1;
+    std::vector<float> heights(side * side);
+    const PostWindow window{max_zoom_, std::int64_t{tile.x} * size, std::int64_t{tile.y} * size, side, side};
+    if (Status status = source_.read(window, heights); !status) return status;
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const float h = heights[i];
+      if (h < low) low = h;
+      if (h > high) high = h;
+      if (i % side == size || i / side == size) continue;
+      tile.has_data = tile.has_data || !std::isnan(h + heights[i + 1] + heights[i + side] + heights[i + side + 1]);
+    }
+    if (low <= high) tile.min_m = low, tile.max_m = high;
+    return Done{};
+  }
+
+  static void merge(TileInfo& into, const TileInfo& tile) {
+    into.min_m = std::min(into.min_m, tile.min_m);
+    into.max_m = std::max(into.max_m, tile.max_m);
+  }
+
+  static void gather_parents(const std::vector<TileInfo>& tiles, std::vector<TileInfo>& parents) {
+    for (TileInfo tile : tiles) {
+      tile.x /= 2;
+      tile.y /= 2;
+      parents.push_back(tile);
+    }
+    std::sort(parents.begin(), parents.end(), before);
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < parents.size(); ++i) {
+      if (before(parents[last], parents[i])) {
+        parents[++last] = parents[i];
+      } else {
+        merge(parents[last], parents[i]);
+      }
+    }
+    parents.resize(last + 1);
+  }
+
+  static void add_roots(std::vector<TileInfo>& tiles) {
+    for (std::uint32_t x = 0; x < 2; ++x) {
+      const TileInfo root{.x = x};
+      const auto place = std::lower_bound(tiles.begin(), tiles.end(), root, before);
+      if (place == tiles.end() || place->x != x) tiles.insert(place, root);
+    }
+  }
+
+  // The mean of the posts of zoom 0 that have data.
+  [[nodiscard]] Status read_poles(TerrainPyramid& pyramid) const {
+    for (int pole = 0; pole < 2; ++pole) {
+      std::vector<float> row(2 * size);
+      if (Status status = source_.read({0, 0, pole * size, 2 * size, 1}, row); !status) return status;
+      double sum_m = 0.0;
+      int count = 0;
+      for (const float height_m : row) {
+        if (std::isnan(height_m)) continue;
+        sum_m += height_m;
+        ++count;
+      }
+      pyramid.polar_height_m_[pole] =
+          count == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(sum_m / count);
+    }
+    return Done{};
+  }
+
+  [[nodiscard]] double tolerance_m(std::uint32_t zoom) const {
+    const std::vector<double>& errors_m = options_.max_error_m;
+    if (errors_m.empty()) return post_spacing_m(zoom) / 16.0;
+    if (errors_m.size() == 1) return std::ldexp(errors_m.front(), static_cast<int>(max_zoom_ - zoom));
+    if (zoom < errors_m.size()) return errors_m[zoom];
+    return std::ldexp(errors_m.back(), static_cast<int>(errors_m.size()) - 1 - static_cast<int>(zoom));
+  }
+
+  // As many as keep the ellipsoid within the tolerance between vertices; a zoom has at least half as many as the one
+  // above, so that chains stay nested.
+  [[nodiscard]] std::uint32_t divisions(std::uint32_t zoom, double tolerance_m) const {
+    const std::vector<std::uint32_t>& given = options_.grid_divisions;
+    if (!given.empty()) return given[std::min<std::size_t>(zoom, given.size() - 1)];
+    const double chord_rad = std::sqrt(8.0 * tolerance_m / equator_radius_m);
+    const double cells = std::ldexp(std::numbers::pi, -static_cast<int>(zoom)) / chord_rad;
+    return static_cast<std::uint32_t>(std::clamp(power_of_two_up(cells), 1.0, 64.0));
+  }
+
+  void choose_numbers(std::uint32_t zoom, TerrainPyramid::Zoom& numbers) const {
+    numbers.tolerance_m = tolerance_m(zoom);
+    numbers.divisions = divisions(zoom, numbers.tolerance_m);
+    double range_m = 0.0, farthest_m = 0.0;
+    for (const TileInfo& tile : numbers.tiles) {
+      const double low_m = std::min(0.0F, tile.min_m), high_m = std::max(0.0F, tile.max_m);
+      range_m = std::max(range_m, static_cast<double>(tile.max_m) - tile.min_m);
+      farthest_m = std::max(farthest_m, high_m - low_m);
+    }
+    // Above the finest zoom there may be tiles without data, which go down to 0.
+    if (zoom < max_zoom_) range_m = farthest_m;
+    // Vertices overshoot by up to 1/256 of a step between posts, and by rounding.
+    constexpr double overshoot = 1.0 + 1.0 / 64.0, float_range = 1 << 22;
+    const double least_m = std::max({range_m * overshoot / (quantized_max - 1), farthest_m / float_range, 0x1p-10});
+    numbers.step_m = std::max(power_of_two_up(least_m), power_of_two_down(numbers.tolerance_m / 32.0));
+    const std::vector<std::uint32_t>& targets = options_.target_edges;
+    numbers.target_edges = targets.empty() ? 0 : targets[std::min<std::size_t>(zoom, targets.size() - 1)];
+  }
+
+  const HeightSource& source_;
+  const TerrainOptions& options_;
+  const Context& context_;
+  terrain::ProgressTicks ticks_;
+  std::uint32_t max_zoom_ = 0;
+};
+
+Result<TerrainPyramid> TerrainPyramid::plan(const HeightSource& source, const TerrainOptions& options,
+                                            const Context& context) {
+  return TerrainPlanner{source, options, context}.plan();
+}
+
+std::uint64_t TerrainPyramid::tile_count() const noexcept {
+  std::uint64_t count = 0;
+  for (const Zoom& zoom : zooms_) count += zoom.tiles.size();
+  return count;
+}
+
+std::vector<TileId> TerrainPyramid::all_tiles() const {
+  std::vector<TileId> ids;
+  ids.reserve(tile_count());
+  for (std::uint32_t z = 0; z <= max_zoom(); ++z) {
+    for (const TileInfo& tile : zooms_[z].tiles) ids.push_back({z, tile.x, tile.y});
+  }
+  return ids;
+}
+
+Result<TerrainTile> TerrainPyramid::build(const TileId& tile) const { return TileBuilder{*this, tile}.build(); }
+
+Status TerrainPyramid::build(std::span<const TileId> tiles, const std::function<Status(const TerrainTile&)>& take,
+                             const Context& context) const {
+  std::vector<std::optional<Error>> errors(tiles.size());
+  std::atomic<bool> failed{false};
+  std::atomic<std::size_t> done{0};
+  terrain::ProgressTicks ticks;
+  parallel_for_each(tiles.size(), 1, context, [&](std::size_t i) {
+    if (failed) return;
+    const auto tile = build(tiles[i]);
+    if (!tile) {
+      errors[i] = tile.error();
+    } else if (Status taken = take(*tile); !taken) {
+      errors[i] = taken.error();
+    }
+    if (errors[i]) failed = true;
+    ticks.tick(context, "tiles", static_cast<double>(++done) / static_cast<double>(tiles.size()));
+  });
+  for (const auto& error : errors) {
+    if (error) return *error;
+  }
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "cancelled", ""};
+  return Done{};
+}
+
+}  // namespace lodestone

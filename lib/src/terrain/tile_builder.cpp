@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "terrain/tile_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "terrain/chains.h"
+#include "terrain/globe.h"
+
+namespace lodestone {
+
+using namespace terrain;
+
+Status TileBuilder::read_posts() {
+  const std::int64_t column = std::int64_t{id_.x} * size, row = std::int64_t{id_.y} * size;
+  const PostWindow window{id_.zoom, column - 1, row - 1, TileLattice::stride, TileLattice::stride};
+  Status status = pyramid_.source_->read(window, lattice_.heights());
+  if (!status) return status;
+  // A pole is one point: its posts have one height.
+  const auto level_row = [&](int y, float height_m) {
+    for (int x = -1; x <= size + 1; ++x) {
+      if (lattice_.valid(x, y) && !std::isnan(height_m)) lattice_.set(x, y, height_m);
+    }
+  };
+  if (row == 0) level_row(0, pyramid_.polar_height_m_[0]);
+  if (row + size == std::int64_t{size} << id_.zoom) level_row(size, pyramid_.polar_height_m_[1]);
+  return status;
+}
+
+// Chains are made of the posts as they are, so that neighbours agree on them whatever else happens to a tile.
+void TileBuilder::plan_borders() {
+  const ChainOptions options{zoom_.tolerance_m, zoom_.step_m, static_cast<int>(zoom_.divisions)};
+  for (const Side side : all_sides) {
+    for (const int t : border_chain(lattice_, side, options)) border_.push_back(post_of(side, t));
+    detail_m_ = std::max(detail_m_, border_detail_m(lattice_, side));
+  }
+}
+
+// A tile without a single cell of data gets height 0 where nothing is known, because clients cannot do without it.
+void TileBuilder::fill_placeholder() {
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (lattice_.cell(x, y)) return;
+    }
+  }
+  placeholder_ = true;
+  const int spacing = size / static_cast<int>(zoom_.divisions);
+  for (const Side side : all_sides) {
+    for (int t = 0; t <= size; ++t) {
+      const auto has_data = [&](int at) {
+        const Post p = post_of(side, std::clamp(at, 0, size));
+        return lattice_.valid(p.x, p.y);
+      };
+      // Steps between what is known and what is not.
+      const bool step = has_data(t) != has_data(t - 1) || has_data(t) != has_data(t + 1);
+      if (step || t % spacing == 0) border_.push_back(post_of(side, t));
+    }
+  }
+  for (float& height_m : lattice_.heights()) {
+    if (std::isnan(height_m)) height_m = 0.0F;
+  }
+}
+
+std::vector<Post> TileBuilder::fixed_posts() const {
+  std::vector<Post> posts;
+  if (!lattice_.complete()) posts = rim_posts(lattice_);
+  const int spacing = size / static_cast<int>(zoom_.divisions);
+  for (int y = spacing; y < size; y += spacing) {
+    for (int x = spacing; x < size; x += spacing) {
+      if (lattice_.valid(x, y)) posts.push_back({x, y});
+    }
+  }
+  return posts;
+}
+
+MeasuredTin TileBuilder::make_tin() const {
+  const std::vector<Post> inside = fixed_posts();
+  return greedy_insertion(lattice_, border_,
+                          {.tolerance_m = zoom_.tolerance_m, .step_m = zoom_.step_m, .inside = inside});
+}
+
+// The smallest power of two that spans the tile, no finer than what a client's 32-bit floats tell apart. Heights are
+// multiples of the zoom's step, which is no smaller.
+void TileBuilder::put_vertices(const Tin& tin, TerrainTile& tile) const {
+  double low_m = tin.vertices.front().height_m, high_m = low_m;
+  for (const Tin::Vertex& vertex : tin.vertices) {
+    low_m = std::min(low_m, vertex.height_m);
+    high_m = std::max(high_m, vertex.height_m);
+  }
+  constexpr double float_range = 1 << 23;
+  const double least_m = std::max((high_m - low_m) / quantized_max, (std::fabs(low_m) + high_m - low_m) / float_range);
+  tile.min_height_m = low_m;
+  tile.step_m = least_m > 0.0 ? std::min(zoom_.step_m, std::exp2(std::ceil(std::log2(least_m)))) : zoom_.step_m;
+  const Normals normals{id_};
+  for (const Tin::Vertex& vertex : tin.vertices) {
+    tile.u.push_back(static_cast<std::uint16_t>(vertex.u));
+    tile.v.push_back(static_cast<std::uint16_t>(vertex.v));
+    tile.height.push_back(static_cast<std::uint16_t>((vertex.height_m - low_m) / tile.step_m));
+    tile.normals.push_back(normals.at(lattice_, vertex.u, vertex.v));
+  }
+  tile.triangles = tin.triangles;
+}
+
+void TileBuilder::put_borders(TerrainTile& tile) const {
+  for (std::uint32_t i = 0; i < tile.vertex_count(); ++i) {
+    if (tile.u[i] == 0) tile.west.push_back(i);
+    if (tile.v[i] == 0) tile.south.push_back(i);
+    if (tile.u[i] == quantized_max) tile.east.push_back(i);
+    if (tile.v[i] == quantized_max) tile.north.push_back(i);
+  }
+  const auto by = [](const std::vector<std::uint16_t>& key) {
+    return [&key](std::uint32_t a, std::uint32_t b) { return key[a] < key[b]; };
+  };
+  std::sort(tile.west.begin(), tile.west.end(), by(tile.v));
+  std::sort(tile.east.begin(), tile.east.end(), by(tile.v));
+  std::sort(tile.south.begin(), tile.south.end(), by(tile.u));
+  std::sort(tile.north.begin(), tile.north.end(), by(tile.u));
+}
+
+void TileBuilder::put_water(TerrainTile& tile) const {
+  const double sea_level_m = pyramid_.options_.sea_level_m;
+  if (std::isnan(sea_level_m)) return;
+  constexpr std::uint8_t land = 0, water = 255;
+  std::vector<std::uint8_t> mask;
+  mask.reserve(std::size_t{size} * size);
+  for (int y = size - 1; y >= 0; --y) {
+    for (int x = 0; x < size; ++x) {
+      const double sum_m = static_cast<double>(lattice_.at(x, y)) + lattice_.at(x + 1, y) + lattice_.at(x, y + 1) +
+                           lattice_.at(x + 1, y + 1);
+      mask.push_back(sum_m <= 4.0 * sea_level_m ? water : land);  // land where there is no data
+    }
+  }
+  const auto waters = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), water));
+  if (waters == 0 || waters == mask.size()) mask.resize(1);
+  tile.water = std::move(mask);
+}
+
+Result<TerrainTile> TileBuilder::build() {
+  Status status = read_posts();
+  if (!status) return status.error();
+  plan_borders();
+  fill_placeholder();
+  const MeasuredTin made = make_tin();
+  TerrainTile tile;
+  tile.id = id_;
+  tile.max_error_m = made.error.max_m;
+  tile.snap_m = zoom_.step_m;
+  tile.border_detail_m = detail_m_;
+  tile.placeholder = placeholder_;
+  put_vertices(made.tin, tile);
+  put_borders(tile);
+  put_water(tile);
+  return tile;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// One tile from its posts.
+#pragma once
+
+#include <lodestone/terrain.h>
+
+#include "terrain/error.h"
+#include "terrain/greedy.h"
+#include "terrain/lattice.h"
+
+namespace lodestone {
+
+class TileBuilder {
+ public:
+  TileBuilder(const TerrainPyramid& pyramid, const TileId& id)
+      : pyramid_{pyramid}, zoom_{pyramid.zooms_[id.zoom]}, id_{id} {}
+  [[nodiscard]] Result<TerrainTile> build();
+
+ private:
+  [[nodiscard]] Status read_posts();
+  void plan_borders();
+  void fill_placeholder();
+  [[nodiscard]] std::vector<terrain::Post> fixed_posts() const;
+  [[nodiscard]] terrain::MeasuredTin make_tin() const;
+  void put_vertices(const terrain::Tin& tin, TerrainTile& tile) const;
+  void put_borders(TerrainTile& tile) const;
+  void put_water(TerrainTile& tile) const;
+
+  const TerrainPyramid& pyramid_;
+  const TerrainPyramid::Zoom& zoom_;
+  TileId id_;
+  terrain::TileLattice lattice_;
+  std::vector<terrain::Post> border_;
+  double detail_m_ = 0.0;
+  bool placeholder_ = false;
+};
+
+}  // namespace lodestone

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+
+#include "heights.h"
+#include "terrain/chains.h"
+#include "terrain/delaunay.h"
+#include "terrain/greedy.h"
+
+using namespace lodestone;
+using namespace lodestone::terrain;
+using lodestone::test::lattice_of;
+
+namespace {
+
+std::vector<Post> all_borders(const TileLattice& lattice, double tolerance_m) {
+  std::vector<Post> posts;
+  for (const Side side : all_sides) {
+    for (const int t : border_chain(lattice, side, {tolerance_m, 0.25, 1})) posts.push_back(post_of(side, t));
+  }
+  return posts;
+}
+
+TileLattice hills() {
+  return lattice_of([](int x, int y) { return test::ranges_m(0.02 * x + 40.0, 0.02 * y + 12.0); });
+}
+
+}  // namespace
+
+TEST_CASE("no vertex lies inside the circle of a triangle, and the triangles tile the square") {
+  const int side = 32;
+  LatticeDelaunay triangulation{side};
+  std::vector<std::uint8_t> taken(33 * 33);
+  taken[0] = taken[side] = taken[33 * side] = taken[33 * side + side] = 1;
+  std::uint64_t state = 7;
+  for (int i = 0; i < 400; ++i) {
+    state = mix64(state + 1);
+    const Post p{static_cast<int>(state % 33), static_cast<int>(state / 64 % 33)};
+    auto& at = taken[static_cast<std::size_t>(33 * p.y + p.x)];
+    if (at != 0) continue;
+    at = 1;
+    triangulation.insert(p, static_cast<std::uint32_t>(state % triangulation.triangle_count()));
+  }
+  std::int64_t area = 0;
+  const auto& posts = triangulation.posts();
+  for (std::uint32_t t = 0; t < triangulation.triangle_count(); ++t) {
+    const std::uint32_t* v = triangulation.corners().data() + 3 * t;
+    const Post a = posts[v[0]], b = posts[v[1]], c = posts[v[2]];
+    REQUIRE(cross(a, b, c) > 0);
+    area += cross(a, b, c);
+    for (const Post d : posts) {
+      const double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y, cx = c.x - d.x, cy = c.y - d.y;
+      const double in = (ax * ax + ay * ay) * (bx * cy - by * cx) - (bx * bx + by * by) * (ax * cy - ay * cx) +
+                        (cx * cx + cy * cy) * (ax * by - ay * bx);
+      REQUIRE(in <= 0.0);
+    }
+    for (std::uint32_t e = 3 * t; e < 3 * t + 3; ++e) {
+      const std::uint32_t twin = triangulation.twins()[e];
+      if (twin == LatticeDelaunay::outside) continue;
+      REQUIRE(triangulation.twins()[twin] == e);
+      REQUIRE(triangulation.corners()[twin] == triangulation.corners()[e % 3 == 2 ? e - 2 : e + 1]);
+    }
+  }
+  CHECK(area == 2 * side * side);
+}
+
+TEST_CASE("greedy insertion keeps every post within the tolerance, the coarser the fewer triangles") {
+  const TileLattice lattice = hills();
+  std::size_t before = 1U << 20U;
+  for (const double tolerance_m : {1.0, 5.0, 25.0, 200.0}) {
+    const auto [tin, error] = greedy_insertion(lattice, all_borders(lattice, tolerance_m), {tolerance_m, 0.25});
+    CHECK(error.sound);
+    CHECK(error.max_m <= tolerance_m + 0.125);
+    CHECK(error.covered_count == 257 * 257);
+    CHECK(tin.triangles.size() < before);
+    before = tin.triangles.size();
+  }
+}
+
+TEST_CASE("the measured error of a flat tin is the height of its posts") {
+  const TileLattice lattice = lattice_of([](int x, int y) { return x == 77 && y == 200 ? 12.5 : 0.0; });
+  Tin tin;
+  const int m = quantized_max;
+  tin.vertices = {{0, 0, 0.0}, {m, 0, 0.0}, {m, m, 0.0}, {0, m, 0.0}};
+  tin.triangles = {0, 1, 2, 0, 2, 3};
+  const TinError error = measure(tin, lattice, 1.0);
+  CHECK(error.max_m == 12.5);
+  CHECK(error.covered_count == 257 * 257);
+  REQUIRE(error.too_far.size() == 1);
+  CHECK(error.too_far[0] == Post{77, 200});
+  tin.triangles = {0, 2, 1, 0, 2, 3};
+  CHECK_FALSE(measure(tin, lattice, 1.0).sound);
+}
+
+TEST_CASE("no triangle covers a cell without data, and all others are covered") {
+  const TileLattice lattice = lattice_of([](int x, int y) {
+    const bool hole = (x - 100) * (x - 100) + (y - 90) * (y - 90) < 900 || x + y > 400 || (x == 30 && y % 7 == 0);
+    return hole ? static_cast<double>(NAN) : 300.0 * std::sin(x * 0.05) * std::cos(y * 0.07);
+  });
+  const std::vector<Post> rim = rim_posts(lattice);
+  const auto [tin, error] = greedy_insertion(lattice, all_borders(lattice, 3.0), {3.0, 0.25, rim});
+  CHECK(error.max_m <= 3.125);
+  std::int64_t area = 0;
+  for (std::size_t t = 0; t < tin.triangles.size(); t += 3) {
+    const Tin::Vertex &a = tin.vertices[tin.triangles[t]], &b = tin.vertices[tin.triangles[t + 1]],
+                      &c = tin.vertices[tin.triangles[t + 2]];
+    REQUIRE_FALSE(std::isnan(a.height_m + b.height_m + c.height_m));
+    area += area_of(a, b, c);
+    for_each_post(a, b, c, [&](int x, int y, double) { REQUIRE(lattice.valid(x, y)); });
+  }
+  std::int64_t cells = 0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (!lattice.cell(x, y)) continue;
+      cells += 2LL * (quantized(x + 1) - quantized(x)) * (quantized(y + 1) - quantized(y));
+    }
+  }
+  CHECK(area == cells);
+}
