@@ -120,8 +120,11 @@ void Collapser::find_lines() {
     add_spoke(star_.v, a_is_v ? f.b : f.a, (a_is_v ? f.at_b : f.at_a) - star_.e, f);
   }
   for (const Spoke& s : spokes_) {
-    const bool line = s.faces != 2 || (state_.looks_matter && looks_differ(s));
-    if (line) star_.lines.push_back({s.from, s.to, s.direction});
+    if (s.faces != 2) {
+      star_.lines.push_back({s.from, s.to, s.direction, state_.line_weight});
+    } else if (state_.looks_matter && looks_differ(s)) {
+      star_.lines.push_back({s.from, s.to, s.direction, line_weight});
+    }
   }
 }
 
@@ -164,11 +167,6 @@ Refusal Collapser::choose_ends() {
   if (u_fixed_ && v_fixed_) return Refusal::Frozen;
   u_may_go_ = !u_fixed_;
   v_may_go_ = !v_fixed_;
-  if (state_.looks_matter && !state_.relaxed) {
-    u_may_go_ = u_may_go_ && wedges_.stays_on_seam(star_, star_.u);
-    v_may_go_ = v_may_go_ && wedges_.stays_on_seam(star_, star_.v);
-    if (!u_may_go_ && !v_may_go_) return Refusal::Seam;
-  }
   return Refusal::None;
 }
 
@@ -194,7 +192,7 @@ bool Collapser::try_place(const glm::dvec3& y) {
 }
 
 Refusal Collapser::choose_place() {
-  quadric_ = sum_star(star_, state_.line_weight);
+  quadric_ = sum_star(star_);
   const Placement placement = state_.options.placement;
   const bool ends_only = placement == Placement::EndPoint || placement == Placement::Subset;
   // A place where the end that cannot go, or may not move, already is.

@@ -14,8 +14,8 @@
 namespace lodestone::collapse {
 
 // Why an edge did not collapse.
-enum class Refusal : std::uint8_t { None, Busy, Outside, Seam, Border, Flip, Link, Frozen, Cost, Crowded };
-inline constexpr std::size_t refusal_count = 10;
+enum class Refusal : std::uint8_t { None, Busy, Outside, Border, Flip, Link, Frozen, Cost, Crowded };
+inline constexpr std::size_t refusal_count = 9;
 
 // What all regions of a pass share.
 struct PassState {
@@ -27,7 +27,6 @@ struct PassState {
   double share = 0.0;                   // of the points that may go in this pass
   bool looks_matter = false;            // there are seams or several materials
   bool loose = false;                   // the link condition is waived
-  bool relaxed = false;                 // seams may be left where nothing else is possible
   std::vector<std::uint32_t> stamps;    // per point
   std::vector<std::uint32_t> last_key;  // per point: key of the last record that touched it
 };

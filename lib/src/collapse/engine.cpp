@@ -74,7 +74,6 @@ class Engine {
   std::uint32_t pass_ = 0;
   double diagonal_m_ = 0.0;
   double error_m_ = 0.0;  // largest so far
-  bool relaxed_ = false;
   bool loose_ = false;
   bool soup_ = false;  // not manifold to begin with
   bool looks_matter_ = false;
@@ -170,7 +169,7 @@ bool Engine::pass(double share) {
   }
   const Candidates candidates = find_candidates(mesh_, quadrics, options_.placement, share, context_);
   if (context_.cancelled() || candidates.edges.empty()) return false;
-  PassState state{mesh_, source_, options_, diagonal_m_, lines, 0.0, looks_matter_, loose_, relaxed_, {}, {}};
+  PassState state{mesh_, source_, options_, diagonal_m_, lines, 0.0, looks_matter_, loose_, {}, {}};
   state.share = quota_share(mesh_.point_count());
   state.stamps.assign(mesh_.point_count(), 0);
   state.last_key.assign(mesh_.point_count(), 0);
@@ -198,10 +197,6 @@ bool Engine::prune_anew() {
 
 // Gives up the next scruple; false if none is left.
 bool Engine::relax() {
-  if (!relaxed_ && looks_matter_) {
-    relaxed_ = true;
-    return true;
-  }
   if (loose_) return false;
   loose_ = true;
   return true;
@@ -258,19 +253,17 @@ CollapseReport Engine::report() const {
   if (result.target_reached) return result;
   const double total = std::max(1.0, std::accumulate(last_refusals_.begin(), last_refusals_.end(), 0.0));
   const auto share = [&](Refusal refusal) { return last_refusals_[static_cast<std::size_t>(refusal)] / total; };
-  result.locked_by_seam = share(Refusal::Seam);
   result.locked_by_border = share(Refusal::Border);
   result.locked_by_flip = share(Refusal::Flip);
   result.locked_by_link = share(Refusal::Link);
   result.locked_by_frozen = share(Refusal::Frozen);
   const auto percent = [](double x) { return std::to_string(std::lround(100.0 * x)) + " %"; };
   result.sentence = std::to_string(faces_left_) + " triangles are left: of the edges that could still collapse " +
-                    percent(result.locked_by_seam) + " are held by seams, " + percent(result.locked_by_border) +
-                    " by borders, " + percent(result.locked_by_flip) + " because a face would flip, " +
-                    percent(result.locked_by_link) + " because the surface would touch itself, " +
-                    percent(result.locked_by_frozen) + " by frozen or sharp vertices, " +
-                    percent(share(Refusal::Crowded)) + " by vertices of very many faces, " +
-                    percent(share(Refusal::Cost)) + " by the error limit";
+                    percent(result.locked_by_border) + " are held by borders, " + percent(result.locked_by_flip) +
+                    " because a face would flip, " + percent(result.locked_by_link) +
+                    " because the surface would touch itself, " + percent(result.locked_by_frozen) +
+                    " by frozen or sharp vertices, " + percent(share(Refusal::Crowded)) +
+                    " by vertices of very many faces, " + percent(share(Refusal::Cost)) + " by the error limit";
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace lodestone::collapse {
 namespace {
@@ -52,7 +53,6 @@ Wedges::Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions&
       source_(source),
       options_(options),
       uv_scale_(options.uv_weight * diagonal_m),
-      normal_scale_(options.normal_weight * diagonal_m),
       color_scale_(options.color_weight * diagonal_m / 255.0) {}
 
 bool Wedges::has_looks() const noexcept {
@@ -60,23 +60,6 @@ bool Wedges::has_looks() const noexcept {
 }
 
 bool Wedges::steered() const noexcept { return options_.attributes == Attributes::All && has_looks(); }
-
-bool Wedges::stays_on_seam(const Star& star, std::uint32_t gone) const {
-  for (const StarFace& f : star.faces) {
-    if (f.side == Side::Both || (f.side == Side::U) != (gone == star.u)) continue;
-    const Face& face = mesh_.faces[f.index];
-    const VertexId vertex = mesh_.vertex_of(face, f.k);
-    const bool found = std::any_of(star.faces.begin(), star.faces.end(), [&](const StarFace& s) {
-      if (s.side != Side::Both) return false;
-      const Face& on_edge = mesh_.faces[s.index];
-      const std::uint32_t k = corner_at(on_edge, gone);
-      return source_.face_material(on_edge.id) == source_.face_material(face.id) &&
-             same_look(mesh_, mesh_.vertex_of(on_edge, k), vertex);
-    });
-    if (!found) return false;
-  }
-  return true;
-}
 
 VertexId Wedges::target_of(VertexId vertex) const {
   for (const Pair& pair : pairs_) {
@@ -159,6 +142,8 @@ void Wedges::finish(Group& group, const Choice& choice) {
 double Wedges::residual(const Star& star, const Choice& choice) {
   double sum = 0.0;
   const VertexArrays& values = mesh_.values;
+  // A normal that turns over the length of the edge says as much as a distance of angle times length.
+  const double normal_scale2 = options_.normal_weight * options_.normal_weight * glm::dot(star.e, star.e);
   for (const StarFace& f : star.faces) {
     const double square = glm::dot(f.normal, f.normal);
     if (square <= 0.0) continue;
@@ -177,7 +162,7 @@ double Wedges::residual(const Star& star, const Choice& choice) {
       if (!values.colors.empty()) color -= weights[c] * glm::dvec4{values.colors[corners[c]]};
     }
     double scatter = 0.0;
-    if (!values.normals.empty() && !group.flat) scatter += normal_scale_ * normal_scale_ * glm::dot(normal, normal);
+    if (!values.normals.empty() && !group.flat) scatter += normal_scale2 * glm::dot(normal, normal);
     if (!values.uvs.empty()) scatter += uv_scale_ * uv_scale_ * glm::dot(uv, uv);
     if (!values.colors.empty()) scatter += color_scale_ * color_scale_ * glm::dot(color, color);
     sum += square * scatter;
@@ -211,13 +196,33 @@ void Wedges::log_move(VertexId vertex, const glm::vec3& position, PassLog& log) 
   if (!values.colors.empty()) log.values.push_back(std::bit_cast<std::uint32_t>(values.colors[vertex]));
 }
 
-VertexId Wedges::any_vertex_at(std::uint32_t point) const {
-  if (!mesh_.has_seams()) return mesh_.wedge[point];
+double Wedges::look_distance(VertexId a, VertexId b) const {
+  const VertexArrays& values = mesh_.values;
+  double sum = 0.0;
+  if (!values.uvs.empty()) {
+    const glm::dvec2 d = glm::dvec2{values.uvs[a]} - glm::dvec2{values.uvs[b]};
+    sum += glm::dot(d, d);
+  }
+  if (!values.normals.empty()) {
+    const glm::dvec3 d = glm::dvec3{values.normals[a]} - glm::dvec3{values.normals[b]};
+    sum += 1e-3 * glm::dot(d, d);  // decides where uv does not
+  }
+  return sum;
+}
+
+VertexId Wedges::nearest_look_at(std::uint32_t point, VertexId to) const {
+  VertexId best = none;
+  double least = 0.0;
   for (std::uint32_t i = mesh_.first[point]; i != mesh_.first[point + 1]; ++i) {
     const Face& f = mesh_.faces[mesh_.corners[i] >> 2U];
-    if (f.id != none) return mesh_.vertex_of(f, mesh_.corners[i] & 3U);
+    if (f.id == none) continue;
+    const VertexId v = mesh_.vertex_of(f, mesh_.corners[i] & 3U);
+    const double distance = look_distance(v, to);
+    if (best != none && (distance > least || (distance == least && v >= best))) continue;
+    best = v;
+    least = distance;
   }
-  return none;
+  return best;
 }
 
 // Faces whose normal their vertices carried keep that: the vertices of one face only turn with it.
@@ -305,18 +310,26 @@ void Wedges::commit(const Star& star, const Choice& choice, PassLog& log) {
   }
 }
 
+// A vertex that goes glides to its heir: where nothing was paired, to the one whose look is nearest.
 VertexId Wedges::heir(const Star& star, const Choice& choice, const Dead& dead) const {
   const VertexId paired = target_of(dead.vertex);
   if (paired != dead.vertex && mesh_.vertex_uses[paired] != 0) return paired;
   if (dead.point != choice.kept) {
     // A corner whose last face went along has nothing left at its place: it goes to the vertex kept.
-    if (const VertexId there = any_vertex_at(dead.point); there != none) return there;
+    if (const VertexId there = nearest_look_at(dead.point, dead.vertex); there != none) return there;
   }
+  VertexId best = dead.vertex;
+  double least = std::numeric_limits<double>::infinity();
   for (const StarFace& f : star.faces) {
     const Face& face = mesh_.faces[f.index];
-    if (face.id != none) return mesh_.vertex_of(face, f.k);
+    if (face.id == none) continue;
+    const VertexId v = mesh_.vertex_of(face, f.k);
+    const double distance = look_distance(v, dead.vertex);
+    if (distance > least || (distance == least && v >= best)) continue;
+    best = v;
+    least = distance;
   }
-  return dead.vertex;
+  return best;
 }
 
 }  // namespace lodestone::collapse

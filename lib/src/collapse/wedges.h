@@ -32,9 +32,6 @@ class Wedges {
  public:
   Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions& options, double diagonal_m);
 
-  // True if every look (material, uv, colour) that faces have at `gone` also occurs there on a face at the edge.
-  [[nodiscard]] bool stays_on_seam(const Star& star, std::uint32_t gone) const;
-
   // Pairs the vertices for the choice, finds new values and returns what the change of looks costs, in the unit of the
   // geometric cost.
   double plan(const Star& star, const Choice& choice);
@@ -76,12 +73,13 @@ class Wedges {
   void commit_single(const Star& star, const Choice& choice, PassLog& log);
   [[nodiscard]] VertexId heir(const Star& star, const Choice& choice, const Dead& dead) const;
   void turn_flat_normals(const Star& star, const Choice& choice, PassLog& log);
-  [[nodiscard]] VertexId any_vertex_at(std::uint32_t point) const;
+  [[nodiscard]] double look_distance(VertexId a, VertexId b) const;
+  [[nodiscard]] VertexId nearest_look_at(std::uint32_t point, VertexId to) const;
 
   WorkingMesh& mesh_;
   const Mesh& source_;
   const EdgeCollapseOptions& options_;
-  double uv_scale_, normal_scale_, color_scale_;
+  double uv_scale_, color_scale_;
   std::vector<Pair> pairs_;
   std::vector<Group> groups_;
   std::vector<Dead> dead_;
