@@ -13,7 +13,7 @@ set -euo pipefail
 packages_of() {
   case "$1" in
     build) echo g++ cmake ninja-build pkg-config git ca-certificates \
-      libglm-dev libtbb-dev libopenmesh-dev libnlopt-dev libcereal-dev libzstd-dev libxxhash-dev \
+      libglm-dev libtbb-dev libopenmesh-dev libnlopt-dev libmetis-dev libcereal-dev libzstd-dev libxxhash-dev \
       nlohmann-json3-dev libcli11-dev libassimp-dev libtinygltf-dev libpugixml-dev \
       libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev ;;
     viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;

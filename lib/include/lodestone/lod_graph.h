@@ -173,8 +173,9 @@ CutSummary select_cut(const LodGraph& graph, const View& view, const CutOptions&
 
 /// How far the nodes of a refined group have travelled towards what the group made, 0..1: 1 when the group's error has
 /// come down to the limit (so that the exchange cannot be seen), 0 when it stands so high that one of its nodes' makers
-/// has reached the limit (so that their exchange cannot either). One number for the whole group: its border does not
-/// move, so nothing opens. Group 0 stays at 0.
+/// has reached the limit (so that their exchange cannot either). One number for the whole group, whose border does not
+/// move, so nothing opens. A group one of whose nodes' makers is refined must be at 0, because finer nodes do not
+/// travel along; here that holds for every cut made with the same limit. Group 0 stays at 0.
 [[nodiscard]] double morph_weight(const LodGraph& graph, const View& view, double error_px, GroupId group) noexcept;
 
 }  // namespace lodestone

@@ -72,8 +72,9 @@ void for_each_neighbour(const Around& around, Visit&& visit) {
 }
 
 // Edges that do not have one face on either side: adds their lines and tells what kind of point this is.
-std::uint8_t add_borders(const WorkingMesh& mesh, const Around& around, const glm::dvec3& at, double weight,
-                         Symmetric3& quadric) {
+// Several borders may meet at a frozen point without making it complex: it belongs to a piece cut out of a larger mesh.
+std::uint8_t add_borders(const WorkingMesh& mesh, const Around& around, const glm::dvec3& at, bool frozen,
+                         double weight, Symmetric3& quadric) {
   std::uint32_t border = 0;
   bool complex = false;
   const Counter next{around.next};
@@ -90,7 +91,7 @@ std::uint8_t add_borders(const WorkingMesh& mesh, const Around& around, const gl
     const glm::dvec3 d = glm::dvec3{mesh.position[p]} - at;
     quadric.add_line(d, weight * glm::dot(d, d));
   });
-  if (complex || border > 2) return point_complex;
+  if (complex || (border > 2 && !frozen)) return point_complex;
   return border == 0 ? 0 : point_border;
 }
 
@@ -248,7 +249,7 @@ std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, 
         quadric.add_plane(glm::cross(glm::dvec3{mesh.position[next]} - at, glm::dvec3{mesh.position[previous]} - at));
       }
       std::uint8_t flags = mesh.flags[p] & point_frozen;
-      if (!closed_ring(around)) flags |= add_borders(mesh, around, at, rules.weight, quadric);
+      if (!closed_ring(around)) flags |= add_borders(mesh, around, at, flags != 0, rules.weight, quadric);
       if (inner_lines) flags |= add_inner_lines(mesh, rules, p, sharp_cosine, around, quadric);
       if (rules.options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
       mesh.flags[p] = flags;

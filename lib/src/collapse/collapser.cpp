@@ -37,7 +37,7 @@ Refusal Collapser::check_topology() {
   }
   const bool open = ((fu | fv) & (point_border | point_complex)) != 0;
   if ((open || state_.loose) && !apexes_stay()) return Refusal::Border;
-  if (state_.loose) find_twins();
+  if (state_.loose && !state_.keeps_twins) find_twins();
   if (!star_.plain) find_lines();
   return Refusal::None;
 }

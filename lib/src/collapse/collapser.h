@@ -27,6 +27,7 @@ struct PassState {
   double share = 0.0;                   // of the points that may go in this pass
   bool looks_matter = false;            // there are seams or several materials
   bool loose = false;                   // the link condition is waived
+  bool keeps_twins = false;             // both of two equal faces stay
   std::vector<std::uint32_t> stamps;    // per point
   std::vector<std::uint32_t> last_key;  // per point: key of the last record that touched it
 };

@@ -37,8 +37,13 @@ double quota_share(std::uint32_t points) {
 
 class Engine {
  public:
-  Engine(const Mesh& source, const EdgeCollapseOptions& options, const Context& context, Sink& sink)
-      : source_(source), options_(options), context_(context), sink_(sink), faces_left_(source.triangle_count()) {}
+  Engine(const Mesh& source, const EdgeCollapseOptions& options, const Context& context, Sink& sink, const Start& start)
+      : source_(source),
+        options_(options),
+        context_(context),
+        sink_(sink),
+        start_(start),
+        faces_left_(source.triangle_count()) {}
 
   CollapseReport run();
 
@@ -52,6 +57,8 @@ class Engine {
   };
 
   void drop_degenerate(const std::vector<FaceId>& faces);
+  void take_deviations();
+  [[nodiscard]] double quota() const { return start_.quota > 0.0 ? start_.quota : quota_share(mesh_.point_count()); }
   void cut_regions();
   void fill_regions(const Candidates& candidates);
   void collapse_region(Region& region, PassState& state) const;
@@ -67,6 +74,7 @@ class Engine {
   const EdgeCollapseOptions& options_;
   const Context& context_;
   Sink& sink_;
+  const Start& start_;
   WorkingMesh mesh_;
   std::vector<Region> regions_;
   std::array<std::uint32_t, refusal_count> last_refusals_{};  // of the last pass
@@ -169,8 +177,13 @@ bool Engine::pass(double share) {
   }
   const Candidates candidates = find_candidates(mesh_, quadrics, options_.placement, share, context_);
   if (context_.cancelled() || candidates.edges.empty()) return false;
-  PassState state{mesh_, source_, options_, diagonal_m_, lines, 0.0, looks_matter_, loose_, {}, {}};
-  state.share = quota_share(mesh_.point_count());
+  PassState state{.mesh = mesh_, .source = source_, .options = options_};
+  state.diagonal_m = diagonal_m_;
+  state.line_weight = lines;
+  state.looks_matter = looks_matter_;
+  state.loose = loose_;
+  state.keeps_twins = start_.contacts == Contacts::MayTouch;
+  state.share = quota();
   state.stamps.assign(mesh_.point_count(), 0);
   state.last_key.assign(mesh_.point_count(), 0);
   cut_regions();
@@ -227,9 +240,21 @@ void Engine::drop_degenerate(const std::vector<FaceId>& faces) {
   }
 }
 
+void Engine::take_deviations() {
+  if (start_.deviation_m.empty()) return;
+  for (const Face& f : mesh_.faces) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      float& deviation = mesh_.deviation_m[f.point[k]];
+      deviation = std::max(deviation, start_.deviation_m[source_.indices[3 * std::size_t{f.id} + k]]);
+    }
+  }
+}
+
 CollapseReport Engine::run() {
   WorkingMeshStart start = make_working_mesh(source_, options_, context_);
   mesh_ = std::move(start.mesh);
+  take_deviations();
+  loose_ = start_.scruples == Scruples::None;
   diagonal_m_ = bounds(source_).diagonal_m();
   looks_matter_ = options_.attributes == Attributes::All && (mesh_.has_seams() || !source_.face_materials.empty());
   drop_degenerate(start.degenerate);
@@ -241,7 +266,7 @@ CollapseReport Engine::run() {
     prune(prune_share * error_m_);
     context_.report("collapse", 1.0 - faces_left_ / total);
     if (!any && share >= 1.0 && !relax() && !prune_anew()) break;
-    const double wanted = 0.5 * quota_share(mesh_.point_count()) * before;
+    const double wanted = 0.5 * quota() * before;
     share = before - faces_left_ < wanted ? std::min(1.0, share * 2.0) : first_share;
   }
   return report();
@@ -277,8 +302,9 @@ Status check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   return Done{};
 }
 
-CollapseReport run(const Mesh& source, const EdgeCollapseOptions& options, const Context& context, Sink& sink) {
-  return Engine{source, options, context, sink}.run();
+CollapseReport run(const Mesh& source, const EdgeCollapseOptions& options, const Context& context, Sink& sink,
+                   const Start& start) {
+  return Engine{source, options, context, sink, start}.run();
 }
 
 }  // namespace lodestone::collapse

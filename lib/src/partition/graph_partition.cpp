@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// Based on: Karypis and Kumar 1998 (multilevel bisection), by their library METIS; this is the only file that names it.
+// Differs: METIS keeps sizes within a tolerance only. Here each bisection is followed by moves along its border, those
+// that lengthen it least first, until both sides can be cut into parts of the sizes asked for.
+#include "partition/graph_partition.h"
+
+#include <metis.h>
+
+#include <algorithm>
+#include <cassert>
+#include <mutex>
+#include <numeric>
+#include <queue>
+#include <utility>
+
+namespace lodestone::partition {
+namespace {
+
+// METIS draws from rand() and sets signal handlers, both of the whole process: one call at a time, each with its own
+// seed.
+std::mutex metis_door;
+
+// Which vertices go to the second side, about `share` of them to the first; false if METIS could not.
+bool metis_bisect(WeightedGraph& graph, double share, std::vector<idx_t>& side) {
+  auto vertices = static_cast<idx_t>(graph.size());
+  idx_t constraints = 1;
+  idx_t parts = 2;
+  idx_t cut = 0;
+  real_t shares[2] = {static_cast<real_t>(share), static_cast<real_t>(1.0 - share)};
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_UFACTOR] = 10;
+  options[METIS_OPTION_NCUTS] = 1;
+  const std::lock_guard lock{metis_door};
+  return METIS_PartGraphRecursive(&vertices, &constraints, graph.first.data(), graph.neighbour.data(), nullptr, nullptr,
+                                  graph.weight.data(), &parts, shares, nullptr, options, &cut, side.data()) == METIS_OK;
+}
+
+// Moves vertices from one side to the other, the cheapest first.
+class Balance {
+ public:
+  Balance(const WeightedGraph& graph, std::vector<idx_t>& side) : graph_(graph), side_(side) {}
+
+  void move(idx_t from, std::uint32_t count) {
+    for (std::uint32_t v = 0; v < graph_.size(); ++v) {
+      if (side_[v] == from) queue_.push({gain(v), v});
+    }
+    while (count > 0) {
+      const auto [old_gain, negative] = std::pair{queue_.top().first, queue_.top().second};
+      queue_.pop();
+      const std::uint32_t v = negative;
+      if (side_[v] != from || gain(v) != old_gain) continue;
+      side_[v] = 1 - from;
+      --count;
+      for (std::int32_t i = graph_.first[v]; i != graph_.first[v + 1]; ++i) {
+        const auto n = static_cast<std::uint32_t>(graph_.neighbour[i]);
+        if (side_[n] == from) queue_.push({gain(n), n});
+      }
+    }
+  }
+
+ private:
+  struct Later {
+    bool operator()(const std::pair<std::int64_t, std::uint32_t>& a,
+                    const std::pair<std::int64_t, std::uint32_t>& b) const {
+      return a.first != b.first ? a.first < b.first : a.second > b.second;
+    }
+  };
+
+  // By how much the border gets lighter if v changes sides.
+  [[nodiscard]] std::int64_t gain(std::uint32_t v) const {
+    std::int64_t sum = 0;
+    for (std::int32_t i = graph_.first[v]; i != graph_.first[v + 1]; ++i) {
+      sum += side_[static_cast<std::size_t>(graph_.neighbour[i])] == side_[v] ? -graph_.weight[i] : graph_.weight[i];
+    }
+    return sum;
+  }
+
+  const WeightedGraph& graph_;
+  std::vector<idx_t>& side_;
+  std::priority_queue<std::pair<std::int64_t, std::uint32_t>, std::vector<std::pair<std::int64_t, std::uint32_t>>,
+                      Later>
+      queue_;
+};
+
+class Partition {
+ public:
+  Partition(std::uint32_t vertices, const PartSizes& sizes) : sizes_(sizes), part_(vertices, 0), place_(vertices, 0) {}
+
+  void cut(WeightedGraph graph, const std::vector<std::uint32_t>& vertices, std::uint32_t parts, std::uint32_t first) {
+    if (parts == 1) {
+      for (const std::uint32_t v : vertices) part_[v] = first;
+      return;
+    }
+    const std::uint32_t count = graph.size();
+    const std::uint32_t left = parts / 2;
+    const std::uint32_t right = parts - left;
+    std::vector<idx_t> side(count, 0);
+    if (!metis_bisect(graph, static_cast<double>(left) / parts, side)) {
+      for (std::uint32_t i = 0; i < count; ++i) side[i] = i < std::uint64_t{count} * left / parts ? 0 : 1;
+    }
+    const auto now = static_cast<std::uint32_t>(std::count(side.begin(), side.end(), 0));
+    const auto low = static_cast<std::uint32_t>(std::max<std::int64_t>(
+        std::int64_t{left} * sizes_.min, std::int64_t{count} - std::int64_t{right} * sizes_.max));
+    const auto high = static_cast<std::uint32_t>(std::min<std::int64_t>(
+        std::int64_t{left} * sizes_.max, std::int64_t{count} - std::int64_t{right} * sizes_.min));
+    assert(low <= high);
+    if (now < low) Balance{graph, side}.move(1, low - now);
+    if (now > high) Balance{graph, side}.move(0, now - high);
+    for (idx_t s = 0; s < 2; ++s) {
+      std::vector<std::uint32_t> inside;
+      WeightedGraph half = part_of(graph, side, s, vertices, inside);
+      cut(std::move(half), inside, s == 0 ? left : right, s == 0 ? first : first + left);
+    }
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> take() { return std::move(part_); }
+
+ private:
+  WeightedGraph part_of(const WeightedGraph& graph, const std::vector<idx_t>& side, idx_t wanted,
+                        const std::vector<std::uint32_t>& vertices, std::vector<std::uint32_t>& inside) {
+    for (std::uint32_t v = 0; v < graph.size(); ++v) {
+      if (side[v] != wanted) continue;
+      place_[v] = static_cast<std::uint32_t>(inside.size());
+      inside.push_back(vertices[v]);
+    }
+    WeightedGraph half;
+    half.first.reserve(inside.size() + 1);
+    half.first.push_back(0);
+    for (std::uint32_t v = 0; v < graph.size(); ++v) {
+      if (side[v] != wanted) continue;
+      for (std::int32_t i = graph.first[v]; i != graph.first[v + 1]; ++i) {
+        const auto n = static_cast<std::size_t>(graph.neighbour[i]);
+        if (side[n] != wanted) continue;
+        half.neighbour.push_back(static_cast<std::int32_t>(place_[n]));
+        half.weight.push_back(graph.weight[i]);
+      }
+      half.first.push_back(static_cast<std::int32_t>(half.neighbour.size()));
+    }
+    return half;
+  }
+
+  PartSizes sizes_;
+  std::vector<std::uint32_t> part_;
+  std::vector<std::uint32_t> place_;
+};
+
+}  // namespace
+
+WeightedGraph make_graph(std::uint32_t vertex_count, std::span<const WeightedEdge> edges) {
+  WeightedGraph graph;
+  graph.first.assign(std::size_t{vertex_count} + 1, 0);
+  for (const WeightedEdge& e : edges) {
+    if (e.a == e.b) continue;
+    ++graph.first[e.a + 1];
+    ++graph.first[e.b + 1];
+  }
+  std::partial_sum(graph.first.begin(), graph.first.end(), graph.first.begin());
+  std::vector<std::int32_t> at(graph.first.begin(), graph.first.end() - 1);
+  std::vector<std::pair<std::int32_t, std::int32_t>> links(static_cast<std::size_t>(graph.first.back()));
+  for (const WeightedEdge& e : edges) {
+    if (e.a == e.b) continue;
+    links[static_cast<std::size_t>(at[e.a]++)] = {static_cast<std::int32_t>(e.b), e.weight};
+    links[static_cast<std::size_t>(at[e.b]++)] = {static_cast<std::int32_t>(e.a), e.weight};
+  }
+  std::int32_t begin = 0;
+  for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    const std::int32_t end = graph.first[v + 1];
+    std::sort(links.begin() + begin, links.begin() + end);
+    for (std::int32_t i = begin; i != end; ++i) {
+      const auto& [to, weight] = links[static_cast<std::size_t>(i)];
+      const bool again =
+          static_cast<std::int32_t>(graph.neighbour.size()) > graph.first[v] && graph.neighbour.back() == to;
+      if (again) {
+        graph.weight.back() += weight;
+      } else {
+        graph.neighbour.push_back(to);
+        graph.weight.push_back(weight);
+      }
+    }
+    begin = end;
+    graph.first[v + 1] = static_cast<std::int32_t>(graph.neighbour.size());
+  }
+  return graph;
+}
+
+std::vector<std::uint32_t> partition_graph(const WeightedGraph& graph, const PartSizes& sizes) {
+  assert(std::uint64_t{sizes.parts} * sizes.min <= graph.size() &&
+         graph.size() <= std::uint64_t{sizes.parts} * sizes.max);
+  Partition partition{graph.size(), sizes};
+  std::vector<std::uint32_t> all(graph.size());
+  std::iota(all.begin(), all.end(), 0U);
+  partition.cut(graph, all, sizes.parts, 0);
+  return partition.take();
+}
+
+}  // namespace lodestone::partition
