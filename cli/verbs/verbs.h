@@ -18,6 +18,7 @@ namespace lodestone::cli {
 [[nodiscard]] std::unique_ptr<Verb> make_sweep();
 [[nodiscard]] std::unique_ptr<Verb> make_render();
 [[nodiscard]] std::unique_ptr<Verb> make_compare();
+[[nodiscard]] std::unique_ptr<Verb> make_outcrop();
 [[nodiscard]] std::unique_ptr<Verb> make_distances();
 [[nodiscard]] std::unique_ptr<Verb> make_view();
 

@@ -23,7 +23,7 @@ PROGRAM = os.environ.get("LODESTONE", "lodestone")
 MANUAL = Path(__file__).resolve().parents[2] / "docs" / "COMMAND_LINE.md"
 COMMON = {"lodestone", "seconds", "peak_rss_bytes", "warnings"}
 VERBS = ["inspect", "generate", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare", "distances",
-         "view"]
+         "outcrop", "view"]
 
 
 def run(*words, **options):
@@ -95,8 +95,10 @@ class Help(Contract):
 
     def test_the_examples_run_as_they_stand(self):
         order = ["generate", "inspect", "convert", "build", "verify", "play", "extract", "sweep", "render", "compare",
-                 "distances"]
+                 "distances", "outcrop"]
         for verb in order:
+            if verb == "outcrop":
+                run("generate", "outcrop", "--triangles", 5000, "--texture-size", 64, "-o", self.scratch / "cliff.obj")
             example = run(verb, "--help").stdout.rsplit("Example:\n", 1)[1].splitlines()[0]
             words = shlex.split(example)
             self.assertEqual(words[0], "lodestone")
@@ -237,6 +239,19 @@ class Keys(Contract):
         self.assertEqual(len(list((self.scratch / "frames").glob("*.png"))), 12)
         self.assertEqual(gif.read_bytes()[:6], b"GIF89a")
 
+
+    def test_outcrop(self):
+        cliff = self.scratch / "cliff.obj"
+        run("generate", "outcrop", "--triangles", 5000, "--texture-size", 64, "-o", cliff)
+        found = self.keys("tiles levels bytes root_error_m source_triangles seams_open",
+                          "outcrop", cliff, "-o", self.scratch / "tiles", "--tile-bytes", "20kB")
+        self.assertEqual(found["seams_open"], 0)
+        self.assertEqual(found["warnings"], [])
+        self.assertEqual(len(found["pyramid"]), found["levels"])
+        self.assertEqual(sum(level["tiles"] for level in found["pyramid"]), found["tiles"])
+        self.assertEqual(found["pyramid"][0]["triangles"], found["source_triangles"])
+        size = sum(f.stat().st_size for f in (self.scratch / "tiles").rglob("*") if f.is_file())
+        self.assertEqual(size, found["bytes"])
 
     def test_distances(self):
         folder = self.scratch / "plan"

@@ -18,12 +18,13 @@ LIB_ARROWS = {
     "collapse": {"base", "geometry", "mesh", "progressive"},
     "metrics": {"base", "geometry", "mesh"},
     "generate": {"base", "geometry", "mesh"},
+    "image": {"base"},
     "perception": {"base", "geometry", "mesh", "metrics"},
     "facets": {"base", "geometry", "mesh", "progressive"},
     "partition": {"base", "geometry", "mesh"},
     "graph": {"base"},
     "clusters": {"base", "geometry", "mesh", "collapse", "partition", "graph"},
-    "outcrop": {"base", "geometry", "mesh", "collapse", "partition", "graph"},
+    "outcrop": {"base", "geometry", "mesh", "collapse", "partition", "graph", "image"},
     "terrain": {"base", "geometry", "mesh", "collapse", "partition", "graph"},
 }
 # Only this part of collapse/ may know the recorder.
@@ -48,6 +49,7 @@ NAMES = {
     r"imgui": ["viewer/"],
     r"GL/|GLES\d?/|epoxy/|glad/": ["viewer/"],
     r"assimp/": ["formats/src/meshes/"],
+    r"proj\.h": ["formats/src/tiles3d/"],
     r"CLI/": ["cli/frame/", "viewer/window/main.cpp"],
     r"nlohmann/": ["formats/src/", "cli/frame/report.cpp"],
 }

@@ -10,6 +10,7 @@
 
 #include <lodestone/image.h>
 #include <lodestone/result.h>
+#include <lodestone/types.h>
 
 namespace lodestone {
 
@@ -17,6 +18,8 @@ using Bytes = std::vector<std::uint8_t>;
 using ByteSpan = std::span<const std::uint8_t>;
 
 [[nodiscard]] Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels);
+// Upright, from the head of a file.
+[[nodiscard]] Result<glm::uvec2> jpeg_size(ByteSpan bytes);
 [[nodiscard]] Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_webp(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels);

@@ -122,6 +122,21 @@ Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels) {
   return upright(std::move(image), markers.orientation);
 }
 
+Result<glm::uvec2> jpeg_size(ByteSpan bytes) {
+  const Handle handle{tjInitDecompress()};
+  if (!handle) return Error{ErrorCode::Unreadable, "the JPEG decoder could not be started", {}};
+  int width = 0;
+  int height = 0;
+  int subsampling = 0;
+  int space = 0;
+  if (tjDecompressHeader3(handle.get(), bytes.data(), static_cast<unsigned long>(bytes.size()), &width, &height,
+                          &subsampling, &space) != 0) {
+    return jpeg_error(handle.get(), "the JPEG header is broken");
+  }
+  const bool turned = read_markers(bytes).orientation >= 5;
+  return turned ? glm::uvec2{height, width} : glm::uvec2{width, height};
+}
+
 Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {
   const Handle handle{tjInitCompress()};
   if (!handle) return Error{ErrorCode::Unreadable, "the JPEG encoder could not be started", {}};

@@ -41,7 +41,7 @@ Result<EncodedTexture> jpeg_or_png(const Texture& texture) {
 class GlbWriter {
  public:
   // The finest level first; all have the surroundings of the first.
-  explicit GlbWriter(std::span<const GltfLevel> levels) : first_{*levels.front().mesh} {
+  GlbWriter(std::span<const GltfLevel> levels, GltfLook look) : first_{*levels.front().mesh}, look_{look} {
     for (const GltfLevel& level : levels) parts_.push_back({level.mesh, {}, false, level.least_coverage});
   }
   [[nodiscard]] Status plan(std::vector<Warning>& warnings);
@@ -67,6 +67,7 @@ class GlbWriter {
   static void write_indices(const Part& part, BlockWriter& out);
 
   const Mesh& first_;
+  GltfLook look_;
   std::vector<Part> parts_;
   Json root_;
   std::string json_;
@@ -161,6 +162,14 @@ void GlbWriter::plan_textures(std::vector<Warning>& warnings) {
         {{"name", texture.name}, {"mimeType", image.mime_type}, {"bufferView", add_view(image.bytes.size(), 0)}});
     root_["textures"].push_back({{"source", texture_ids_.back()}});
   }
+  if (look_ == GltfLook::Lit || images_.empty()) return;
+  constexpr int linear = 9729;
+  constexpr int linear_mipmap_linear = 9987;
+  constexpr int clamp_to_edge = 33071;
+  root_["samplers"].push_back(
+      {{"magFilter", linear}, {"minFilter", linear_mipmap_linear}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}});
+  for (Json& texture : root_["textures"]) texture["sampler"] = 0;
+  root_["extensionsUsed"].push_back("KHR_materials_unlit");
 }
 
 Json GlbWriter::material_json(const Material& material) const {
@@ -178,6 +187,7 @@ Json GlbWriter::material_json(const Material& material) const {
     json["alphaMode"] = "BLEND";
   }
   if (material.double_sided) json["doubleSided"] = true;
+  if (textured && look_ == GltfLook::Photograph) json["extensions"]["KHR_materials_unlit"] = Json::object();
   return json;
 }
 
@@ -273,9 +283,10 @@ void GlbWriter::write(BlockWriter& out) const {
 
 }  // namespace
 
-Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file, const Context& context) {
+Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file, const Context& context,
+                         GltfLook look) {
   std::vector<Warning> warnings;
-  GlbWriter writer{levels};
+  GlbWriter writer{levels, look};
   if (auto planned = writer.plan(warnings); !planned) {
     return Error{planned.error().code, planned.error().message, file.string()};
   }

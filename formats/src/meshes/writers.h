@@ -22,9 +22,14 @@ struct GltfLevel {
   const Mesh* mesh = nullptr;
   double least_coverage = 0.0;
 };
+// How a renderer shall treat textured materials.
+enum class GltfLook : std::uint8_t {
+  Lit,
+  Photograph,  // light is in the picture already (KHR_materials_unlit), and it does not repeat
+};
 // A GLB; the finest level first. Precondition: at least one, all levels of one model.
 [[nodiscard]] Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file,
-                                       const Context& context);
+                                       const Context& context, GltfLook look = GltfLook::Lit);
 
 // An OutputFile behind a block of memory, watched by a Context.
 class BlockWriter {

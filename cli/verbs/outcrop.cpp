@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/tileset_writer.h>
+
+#include "mesh_input.h"
+#include "verbs.h"
+
+namespace lodestone::cli {
+namespace {
+
+class Outcrop final : public Verb {
+ public:
+  [[nodiscard]] std::string name() const override { return "outcrop"; }
+  [[nodiscard]] std::string summary() const override { return "Make a pyramid of textured tiles of an outcrop"; }
+  [[nodiscard]] std::string example() const override { return "lodestone outcrop cliff.obj -o cliff_tiles"; }
+  void declare(Arguments& arguments) override;
+  [[nodiscard]] Status run(Session& session) override;
+
+ private:
+  [[nodiscard]] TilesetOptions options() const;
+  static void describe(Session& session, const TilesetReport& written);
+
+  MeshInput input_;
+  std::filesystem::path output_;
+  std::string as_ = "3dtiles";
+  std::string split_ = "auto";
+  std::string image_ = "jpeg";
+  std::string version_ = "1.1";
+  double ratio_ = 0.0;
+  double texture_ratio_ = 0.0;
+  std::uint64_t tile_bytes_ = 0;
+  std::uint32_t quality_ = 90;
+  bool resume_ = false;
+};
+
+void Outcrop::declare(Arguments& arguments) {
+  input_.declare(arguments, "FILE", "Textured mesh");
+  arguments.file("-o,--output", output_, "Folder to write", Need::Required);
+  arguments.choice("--as", as_, {"3dtiles"}, "Kind of tiles");
+  arguments.number("--ratio", ratio_, 0.0, 0.95, "Triangles kept from level to level, 0 = as the textures ask");
+  arguments.number("--texture-ratio", texture_ratio_, 0.0, 0.95,
+                   "Texture width kept from level to level, 0 = --ratio, or a half");
+  arguments.bytes("--tile-bytes", tile_bytes_, "Bytes of a tile to aim at, 0 = by the size of the whole");
+  arguments.choice("--split", split_, {"auto", "texture", "space"}, "How images are cut into tiles");
+  arguments.choice("--image", image_, {"jpeg", "png"}, "Format of the tiles' textures");
+  arguments.count("--quality", quality_, 1, 100, "Of JPEG; from 90 on colours keep their full resolution");
+  arguments.choice("--tiles-version", version_, {"1.1", "1.0"}, "3D Tiles: glb, or b3dm for older clients");
+  arguments.flag("--resume", resume_, "Go on with a build that was stopped");
+}
+
+TilesetOptions Outcrop::options() const {
+  TilesetOptions options;
+  options.pyramid.ratio = ratio_;
+  options.pyramid.texture_ratio = texture_ratio_;
+  options.pyramid.tile_bytes = tile_bytes_;
+  if (split_ == "texture") options.pyramid.split = TileSplit::Texture;
+  if (split_ == "space") options.pyramid.split = TileSplit::Space;
+  if (image_ == "png") options.image = TileImage::Png;
+  if (version_ == "1.0") options.version = TilesVersion::V1_0;
+  options.jpeg_quality = static_cast<int>(quality_);
+  options.resume = resume_;
+  return options;
+}
+
+void Outcrop::describe(Session& session, const TilesetReport& written) {
+  std::uint32_t in_space = 0;
+  for (const OutcropSegment& segment : written.segments) {
+    if (segment.split == TileSplit::Space) ++in_space;
+  }
+  Report& report = session.report();
+  report.set("segments", static_cast<std::uint32_t>(written.segments.size()));
+  report.set("segments_split_in_space", in_space);
+  report.set("kept_tiles", written.kept_tiles);
+  report.set("geometry_seconds", written.geometry_seconds);
+  report.set("decode_seconds", written.decode_seconds);
+  report.set("resample_seconds", written.resample_seconds);
+  report.set("encode_seconds", written.encode_seconds);
+  report.set("decoded_megapixels", written.decoded_megapixels);
+  report.set("encoded_megapixels", written.encoded_megapixels);
+  std::uint32_t number = 0;
+  for (const OutcropLevel& level : written.levels) {
+    Report one;
+    one.set("level", number++);
+    one.set("tiles", level.tiles);
+    one.set("triangles", level.triangles);
+    one.set("geometric_error_m", level.geometric_error_m);
+    one.set("texture_scale", level.texture_scale);
+    one.set("border_share", static_cast<double>(level.border_triangles) / level.triangles);
+    report.add("pyramid", one);
+  }
+}
+
+Status Outcrop::run(Session& session) {
+  auto loaded = input_.read(session, LoadTextures::Reference);
+  if (!loaded) return loaded.error();
+  auto written = write_outcrop(std::move(loaded->mesh), output_, options(), session.context());
+  session.keep(written);
+  if (!written) return written.error();
+  const auto check = check_tileset(output_ / "tileset.json", session.context());
+  if (!check) return check.error();
+  std::vector<Warning> faults;
+  for (const std::string& fault : check->faults) faults.push_back({fault, output_.string()});
+  session.keep(std::move(faults));
+  Report& report = session.report();
+  report.set("tiles", written->tiles);
+  report.set("levels", static_cast<std::uint32_t>(written->levels.size()));
+  report.set("bytes", written->bytes);
+  report.set("root_error_m", written->root_error_m);
+  report.set("source_triangles", written->source_triangles);
+  report.set("seams_open", check->seams_open);
+  describe(session, *written);
+  return Done{};
+}
+
+}  // namespace
+
+std::unique_ptr<Verb> make_outcrop() { return std::make_unique<Outcrop>(); }
+
+}  // namespace lodestone::cli

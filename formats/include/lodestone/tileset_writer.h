@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Outcrops as 3D Tiles: a folder that CesiumJS, 3DTilesRendererJS and our own viewer open at once.
+///
+///     auto loaded = lodestone::read_mesh("cliff.obj", {.textures = lodestone::LoadTextures::Reference});
+///     auto done = lodestone::write_outcrop(std::move(loaded->mesh), "cliff_tiles");
+///
+/// The folder holds `tileset.json`, `build.json` (what it was made from, for resuming) and `tiles/L<level>_<i>.glb`,
+/// level 0 the finest. All names in it are relative: it may be moved and served from anywhere.
+///
+/// Refinement is REPLACE. `geometricError` is 16 times the tile's error in metres, so that a client with the usual
+/// maximum screen-space error of 16 pixels shows a tile while its texels, and its deviation from the source, are no
+/// larger than a pixel.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <lodestone/context.h>
+#include <lodestone/outcrop.h>
+#include <lodestone/result.h>
+
+namespace lodestone {
+
+enum class TileImage : std::uint8_t { Jpeg, Png };
+
+enum class TilesVersion : std::uint8_t {
+  V1_1,  ///< glb
+  V1_0,  ///< b3dm, for older clients
+};
+
+struct TilesetOptions {
+  OutcropOptions pyramid;
+  TileImage image = TileImage::Jpeg;
+  int jpeg_quality = 90;  ///< 1..100; from 90 on colours are not subsampled
+  TilesVersion version = TilesVersion::V1_1;
+  /// Goes on with a build of the same input and options that was stopped at any point; tiles that are there are kept.
+  /// The folder comes out the same, byte for byte.
+  bool resume = false;
+};
+
+struct TilesetReport {
+  std::uint32_t tiles = 0;
+  std::uint32_t source_triangles = 0;
+  std::uint64_t bytes = 0;  ///< of all files
+  double root_error_m = 0.0;
+  std::uint32_t kept_tiles = 0;  ///< that were there already (resume)
+  std::vector<OutcropLevel> levels;
+  std::vector<OutcropSegment> segments;
+  double decoded_megapixels = 0.0;
+  double encoded_megapixels = 0.0;
+  double decode_seconds = 0.0;    ///< summed over workers
+  double resample_seconds = 0.0;  ///< filling, shrinking and cutting
+  double encode_seconds = 0.0;
+  double geometry_seconds = 0.0;  ///< wall time of OutcropPyramid::build
+};
+
+/// Writes the pyramid of a mesh whose textures are referred to by path, encoded or decoded. One photograph per worker
+/// is in memory at a time; `Context::max_memory_bytes` limits how many workers may hold one. With `crs` known the root
+/// transform places the outcrop on the globe, else it carries the origin. The same bytes come out for any number of
+/// workers. Errors: those of OutcropPyramid::build; BadData for a texture that cannot be decoded, by name; Unreadable
+/// for a full disk; BadArgument where `resume` meets a folder made from something else. A call that fails or is
+/// cancelled leaves no half-written file and no tileset.json, and can be resumed.
+[[nodiscard]] Result<TilesetReport> write_outcrop(Mesh mesh, const std::filesystem::path& folder,
+                                                  const TilesetOptions& options = {}, const Context& context = {});
+
+/// What a look at all files of a tileset found. The usual validators check the JSON only.
+struct TilesetCheck {
+  std::uint32_t tiles = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t triangles = 0;                ///< of all tiles without children
+  std::uint32_t contents_outside_box = 0;     ///< tiles with a vertex outside their own bounding volume
+  std::uint32_t children_outside_parent = 0;  ///< tiles whose volume is not inside their parent's
+  std::uint32_t errors_not_monotone = 0;      ///< tiles whose geometricError is not below their parent's
+  /// Over all levels: edges with one triangle in all tiles of the level together, beyond those that the level has as
+  /// true border. 0 where tiles fit bit for bit.
+  std::uint64_t seams_open = 0;
+  std::vector<std::string> faults;  ///< the first ten, in words
+};
+/// Reads every tile of a tileset of ours. Errors: those of reading.
+[[nodiscard]] Result<TilesetCheck> check_tileset(const std::filesystem::path& tileset_json,
+                                                 const Context& context = {});
+
+}  // namespace lodestone

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The source's images: their sizes without decoding, their pixels one at a time.
+#pragma once
+
+#include <cstdint>
+
+#include <lodestone/formats.h>
+#include <lodestone/outcrop.h>
+
+namespace lodestone {
+
+// Size 0 and a warning for a texture that is not there or is no image.
+[[nodiscard]] TextureInfo measure_texture(const Texture& texture, std::vector<Warning>& warnings);
+
+// Errors name the texture's file.
+[[nodiscard]] Result<Image> decode_texture(const Texture& texture);
+
+}  // namespace lodestone

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Based on: OGC 3D Tiles 1.1 (22-025r4), section 7 (tileset JSON), and 1.0 (batched models).
+#include "tiles3d/read_tileset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "reader.h"
+
+namespace lodestone {
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::uint64_t most_json_bytes = 256ULL << 20;
+constexpr std::uint64_t most_tile_bytes = 1ULL << 30;
+constexpr std::size_t most_tiles = 4'000'000;
+constexpr std::uint32_t most_depth = 512;
+
+struct Fault {
+  std::string message;
+};
+
+double finite(const Json& json) {
+  const auto value = json.get<double>();
+  if (!std::isfinite(value)) throw Fault{"a number is not finite"};
+  return value;
+}
+
+Box box_of(const Json& volume) {
+  Box box;
+  if (volume.contains("box")) {
+    const Json& b = volume.at("box");
+    if (b.size() != 12) throw Fault{"a box has 12 numbers"};
+    const auto vector = [&](std::size_t i) { return glm::dvec3{finite(b[i]), finite(b[i + 1]), finite(b[i + 2])}; };
+    const glm::dvec3 half = glm::abs(vector(3)) + glm::abs(vector(6)) + glm::abs(vector(9));
+    box.add(vector(0) - half);
+    box.add(vector(0) + half);
+  } else if (volume.contains("sphere")) {
+    const Json& s = volume.at("sphere");
+    if (s.size() != 4) throw Fault{"a sphere has 4 numbers"};
+    const glm::dvec3 center{finite(s[0]), finite(s[1]), finite(s[2])};
+    box.add(center - std::abs(finite(s[3])));
+    box.add(center + std::abs(finite(s[3])));
+  } else {
+    throw Fault{"only boxes and spheres are understood as bounding volumes"};
+  }
+  return box;
+}
+
+// A name below the folder, without a way out of it.
+std::string safe_uri(const std::string& uri) {
+  const std::filesystem::path path{uri};
+  const bool leaves = std::any_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; });
+  if (path.is_absolute() || leaves || uri.find(':') != std::string::npos) {
+    throw Fault{"the content \"" + uri + "\" is not a file below the tileset"};
+  }
+  return uri;
+}
+
+void add_tile(const Json& json, std::uint32_t parent, std::uint32_t depth, Tileset& out) {
+  if (depth > most_depth) throw Fault{"tiles are nested too deeply"};
+  if (out.tiles.size() >= most_tiles) throw Fault{"there are too many tiles"};
+  const auto id = static_cast<std::uint32_t>(out.tiles.size());
+  TilesetTile tile;
+  tile.parent = parent;
+  tile.level = depth;
+  tile.bounds = box_of(json.at("boundingVolume"));
+  tile.geometric_error = finite(json.at("geometricError"));
+  if (json.contains("content")) tile.uri = safe_uri(json.at("content").at("uri").get<std::string>());
+  if (parent != none) out.tiles[parent].children.push_back(id);
+  out.tiles.push_back(std::move(tile));
+  out.level_count = std::max(out.level_count, depth + 1);
+  if (!json.contains("children")) return;
+  for (const Json& child : json.at("children")) add_tile(child, id, depth + 1, out);
+}
+
+Tileset tileset_of(const Json& json) {
+  Tileset out;
+  const Json& root = json.at("root");
+  add_tile(root, none, 0, out);
+  for (TilesetTile& tile : out.tiles) tile.level = out.level_count - 1 - tile.level;
+  if (root.contains("transform")) {
+    const Json& t = root.at("transform");
+    if (t.size() != 16) throw Fault{"a transform has 16 numbers"};
+    out.origin = {finite(t[12]), finite(t[13]), finite(t[14])};
+  }
+  const Json& asset = json.at("asset");
+  if (asset.contains("extras") && asset["extras"].contains("openEdges")) {
+    out.open_edges = asset["extras"]["openEdges"].get<std::vector<std::uint64_t>>();
+  }
+  return out;
+}
+
+Result<std::span<const std::uint8_t>> payload_of(std::span<const std::uint8_t> bytes, const std::string& name) {
+  constexpr std::size_t head_bytes = 28;
+  if (bytes.size() < 4 || std::memcmp(bytes.data(), "b3dm", 4) != 0) return bytes;
+  const Error cut{ErrorCode::BadData, "the batched model is cut off", name};
+  if (bytes.size() < head_bytes) return cut;
+  std::uint64_t skip = head_bytes;
+  for (std::size_t at = 12; at < head_bytes; at += 4) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + at, sizeof length);
+    skip += length;
+  }
+  if (skip > bytes.size()) return cut;
+  return bytes.subspan(skip);
+}
+
+}  // namespace
+
+Result<Tileset> read_tileset(const std::filesystem::path& file) {
+  const auto input = Input::open(file, most_json_bytes);
+  if (!input) return input.error();
+  const auto bytes = input->read_all();
+  if (!bytes) return bytes.error();
+  try {
+    Tileset tileset = tileset_of(Json::parse(*bytes));
+    tileset.folder = file.parent_path();
+    return tileset;
+  } catch (const Fault& fault) {
+    return Error{ErrorCode::BadData, fault.message, file.string()};
+  } catch (const Json::exception& fault) {
+    return Error{ErrorCode::BadData, std::string{"it is no tileset: "} + fault.what(), file.string()};
+  }
+}
+
+Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures) {
+  const std::filesystem::path file = tileset.folder / tileset.tiles[tile].uri;
+  const auto input = Input::open(file, most_tile_bytes);
+  if (!input) return input.error();
+  const auto bytes = input->read_all();
+  if (!bytes) return bytes.error();
+  const auto payload = payload_of(*bytes, file.string());
+  if (!payload) return payload.error();
+  const Input glb = Input::from_bytes(*payload, file.stem().string() + ".glb", file.parent_path());
+  auto loaded = read_input(glb, {.textures = textures}, {});
+  if (!loaded) return Error{loaded.error().code, loaded.error().message, file.string()};
+  return LoadedTile{std::move(loaded->mesh), bytes->size()};
+}
+
+}  // namespace lodestone

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: MIT
+// Based on: Ao et al. 2025, section 3.5.1 (storage).
+// Differs: every tile is a job of its own, written beside its name and renamed, so a build that was stopped goes on
+// where it was. Photographs are decoded once: all tiles that show only that image are cut from it level by level; what
+// coarser tiles of several images need of it waits in the folder `work` until the end.
+#define XXH_INLINE_ALL  // header only
+#include <xxhash.h>
+#include <ctime>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "meshes/writers.h"
+#include "tiles3d/jobs.h"
+#include "tiles3d/photographs.h"
+#include "tiles3d/tileset_json.h"
+
+namespace lodestone {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+constexpr int build_version = 1;  // of what tiles look like; raise it when they change
+
+double thread_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Adds the time until its end to a sum.
+class Stopwatch {
+ public:
+  Stopwatch(std::mutex& mutex, double& sum) : mutex_(mutex), sum_(sum) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch() {
+    const double spent = thread_seconds() - start_;
+    const std::scoped_lock lock{mutex_};
+    sum_ += spent;
+  }
+
+ private:
+  std::mutex& mutex_;
+  double& sum_;
+  double start_ = thread_seconds();
+};
+
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values, std::uint64_t seed) {
+  return XXH64(values.data(), values.size() * sizeof(T), seed);
+}
+
+// What makes one build differ from another.
+std::string signature(const Mesh& mesh, std::span<const TextureInfo> textures, const TilesetOptions& options) {
+  std::uint64_t hash = hash_of(mesh.vertices.positions, build_version);
+  hash = hash_of(mesh.vertices.uvs, hash);
+  hash = hash_of(mesh.vertices.normals, hash);
+  hash = hash_of(mesh.vertices.colors, hash);
+  hash = hash_of(mesh.indices, hash);
+  hash = hash_of(mesh.face_materials, hash);
+  hash = hash_of(mesh.face_features, hash);
+  std::vector<double> numbers{mesh.origin.x,
+                              mesh.origin.y,
+                              mesh.origin.z,
+                              options.pyramid.ratio,
+                              options.pyramid.texture_ratio,
+                              static_cast<double>(options.pyramid.tile_bytes),
+                              static_cast<double>(options.pyramid.split),
+                              static_cast<double>(options.image),
+                              static_cast<double>(options.jpeg_quality),
+                              static_cast<double>(options.version)};
+  for (const Material& m : mesh.materials) {
+    numbers.insert(numbers.end(), {m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a, m.alpha_cutoff,
+                                   static_cast<double>(m.texture)});
+  }
+  for (const TextureInfo& info : textures) {
+    numbers.insert(numbers.end(), {static_cast<double>(info.width_px), static_cast<double>(info.height_px),
+                                   static_cast<double>(info.file_bytes)});
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_of(numbers, hash)));
+  return text;
+}
+
+Error cannot_make(const fs::path& folder, const std::error_code& fault) {
+  return {ErrorCode::Unreadable, "the folder cannot be made: " + fault.message(), folder.string()};
+}
+
+class OutcropWriter {
+ public:
+  OutcropWriter(fs::path folder, const TilesetOptions& options, const Context& context)
+      : folder_(std::move(folder)), options_(options), context_(context) {
+    quiet_.cancel = context.cancel;
+  }
+  Result<TilesetReport> write(Mesh mesh);
+
+ private:
+  [[nodiscard]] Status prepare_folder(const std::string& build);
+  void clean(const fs::path& folder, bool tiles) const;
+  void sort_tiles();
+  [[nodiscard]] unsigned photographs_at_once() const;
+  [[nodiscard]] Status write_photograph(std::uint32_t segment, unsigned workers);
+  [[nodiscard]] Status write_joined(std::uint32_t tile);
+  [[nodiscard]] Status write_tile(std::uint32_t tile, std::span<const SegmentImages* const> images);
+  [[nodiscard]] Status put_texture(TileContent& content, std::span<const SegmentImages* const> images);
+  [[nodiscard]] Status store_level(const SegmentImages& images) const;
+  [[nodiscard]] Result<SegmentImages> load_level(std::uint32_t segment, std::uint32_t level) const;
+  [[nodiscard]] fs::path work_file(std::uint32_t segment, std::uint32_t level) const {
+    return folder_ / "work" / ("S" + std::to_string(segment) + "_L" + std::to_string(level));
+  }
+  [[nodiscard]] fs::path tile_file(std::uint32_t tile) const {
+    return folder_ / tile_name(*pyramid_, tile, options_.version);
+  }
+  [[nodiscard]] bool is_done(const fs::path& file) const {
+    std::error_code fault;
+    return options_.resume && fs::exists(file, fault);
+  }
+  [[nodiscard]] bool photograph_is_done(std::uint32_t segment) const;
+  void tile_finished(bool kept);
+  [[nodiscard]] Status finish();
+
+  fs::path folder_;
+  const TilesetOptions& options_;
+  const Context& context_;
+  Context quiet_;  // cancels, but does not report: for jobs that run beside each other
+  std::shared_ptr<const OutcropPyramid> pyramid_;
+  std::vector<Texture> textures_;
+  std::vector<TextureInfo> infos_;
+  std::vector<std::map<std::uint32_t, std::vector<std::uint32_t>>> alone_;  // per segment: tiles of each level
+  std::vector<std::vector<std::uint8_t>> joined_levels_;  // per segment and level: a joined tile needs its image
+  std::vector<std::uint32_t> joined_;                     // tiles of several segments, or without texture
+  std::mutex mutex_;
+  std::uint32_t done_ = 0;
+  TilesetReport report_;
+  std::vector<Warning> warnings_;
+};
+
+// Removes what a build of ours left: half-written files, and tiles unless they are to be kept.
+void OutcropWriter::clean(const fs::path& folder, bool tiles) const {
+  std::error_code fault;
+  for (const auto& entry : fs::directory_iterator{folder, fault}) {
+    const std::string name = entry.path().filename().string();
+    const bool half = name.find(".part") != std::string::npos;
+    const bool tile = name.starts_with('L') && (name.ends_with(".glb") || name.ends_with(".b3dm"));
+    if (half || (tiles && tile)) fs::remove(entry.path(), fault);
+  }
+}
+
+Status OutcropWriter::prepare_folder(const std::string& build) {
+  const fs::path file = folder_ / "build.json";
+  std::error_code fault;
+  const Json wanted{{"format", "lodestone outcrop"}, {"version", build_version}, {"build", build}};
+  const std::string text = wanted.dump() + "\n";
+  std::ifstream stream{file, std::ios::binary};
+  const std::string found{std::istreambuf_iterator<char>{stream}, {}};
+  if (options_.resume && !found.empty() && found != text) {
+    return Error{ErrorCode::BadArgument,
+                 "the folder was made from another input or with other options, "
+                 "leave --resume out to write over it",
+                 folder_.string()};
+  }
+  for (const char* name : {"tiles", "work"}) {
+    fs::create_directories(folder_ / name, fault);
+    if (fault) return cannot_make(folder_ / name, fault);
+  }
+  clean(folder_, false);
+  clean(folder_ / "work", false);
+  clean(folder_ / "tiles", !options_.resume || found.empty());
+  fs::remove(folder_ / "tileset.json", fault);
+  return write_whole_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void OutcropWriter::sort_tiles() {
+  const std::size_t segments = pyramid_->segments().size();
+  alone_.resize(segments);
+  joined_levels_.assign(segments, std::vector<std::uint8_t>(pyramid_->levels().size(), 0));
+  for (std::uint32_t i = 0; i < pyramid_->tiles().size(); ++i) {
+    const OutcropTile& tile = pyramid_->tiles()[i];
+    if (tile.segments.size() == 1 && pyramid_->segments()[tile.segments.front()].texture != none) {
+      alone_[tile.segments.front()][tile.level].push_back(i);
+    } else {
+      joined_.push_back(i);
+      for (const std::uint32_t s : tile.segments) joined_levels_[s][tile.level] = 1;
+    }
+  }
+}
+
+void OutcropWriter::tile_finished(bool kept) {
+  const std::scoped_lock lock{mutex_};
+  ++done_;
+  if (kept) ++report_.kept_tiles;
+  context_.report("tiles", static_cast<double>(done_) / static_cast<double>(pyramid_->tiles().size()));
+}
+
+// Raw pixels: they live for one build.
+Status OutcropWriter::store_level(const SegmentImages& images) const {
+  const Image& image = images.image();
+  auto out = OutputFile::create(work_file(images.segment(), images.level()));
+  if (!out) return out.error();
+  const std::uint32_t head[] = {image.width, image.height, image.channels};
+  out->write(head, sizeof head);
+  out->write(image.pixels.data(), image.pixels.size());
+  return out->commit();
+}
+
+Result<SegmentImages> OutcropWriter::load_level(std::uint32_t segment, std::uint32_t level) const {
+  const fs::path file = work_file(segment, level);
+  std::ifstream stream{file, std::ios::binary};
+  std::uint32_t head[3] = {};
+  stream.read(reinterpret_cast<char*>(head), sizeof head);
+  const glm::uvec2 size = pyramid_->image_size(segment, level);
+  const Error damaged{ErrorCode::BadData, "a file of this build is damaged, start without --resume", file.string()};
+  if (!stream || head[0] > size.x || head[1] > size.y || head[2] == 0 || head[2] > 4) return damaged;
+  Image image{head[0], head[1], head[2], {}};
+  image.pixels.resize(static_cast<std::size_t>(image.width) * image.height * image.channels);
+  stream.read(reinterpret_cast<char*>(image.pixels.data()), static_cast<std::streamsize>(image.pixels.size()));
+  if (!stream) return damaged;
+  return SegmentImages{segment, level, std::move(image)};
+}
+
+Status OutcropWriter::put_texture(TileContent& content, std::span<const SegmentImages* const> images) {
+  Image pixels;
+  {
+    const Stopwatch watch{mutex_, report_.resample_seconds};
+    pixels = compose(content.texture, images);
+  }
+  const Stopwatch watch{mutex_, report_.encode_seconds};
+  const bool png = options_.image == TileImage::Png || pixels.channels % 2 == 0;
+  auto bytes = png ? encode_png(pixels) : encode_jpeg(pixels, options_.jpeg_quality);
+  if (!bytes) return bytes.error();
+  Texture& texture = content.mesh.textures.front();
+  texture.mime_type = png ? "image/png" : "image/jpeg";
+  texture.encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+  const std::scoped_lock lock{mutex_};
+  report_.encoded_megapixels += 1e-6 * static_cast<double>(pixels.width) * pixels.height;
+  return Done{};
+}
+
+// The glb of a tile in a batched model of one batch.
+Status wrap_as_b3dm(const fs::path& glb, const fs::path& file) {
+  std::ifstream stream{glb, std::ios::binary};
+  std::string payload{std::istreambuf_iterator<char>{stream}, {}};
+  std::string table = R"({"BATCH_LENGTH":0})";
+  constexpr std::size_t head_bytes = 28;
+  table.resize((head_bytes + table.size() + 7) / 8 * 8 - head_bytes, ' ');
+  payload.resize((payload.size() + 7) / 8 * 8, '\0');
+  const std::uint32_t head[] = {0x6d643362U,  // "b3dm"
+                                1,
+                                static_cast<std::uint32_t>(head_bytes + table.size() + payload.size()),
+                                static_cast<std::uint32_t>(table.size()),
+                                0,
+                                0,
+                                0};
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  out->write(head, sizeof head);
+  out->write(table);
+  out->write(payload);
+  return out->commit();
+}
+
+Status OutcropWriter::write_tile(std::uint32_t tile, std::span<const SegmentImages* const> images) {
+  TileContent content = pyramid_->content(tile);
+  content.mesh.origin = glm::dvec3{0.0};  // the root's transform carries it
+  content.mesh.crs.clear();
+  if (!content.texture.pieces.empty()) {
+    if (Status status = put_texture(content, images); !status) return status;
+  }
+  const fs::path file = tile_file(tile);
+  const GltfLevel only{&content.mesh, 0.0};
+  const bool plain = options_.version == TilesVersion::V1_1;
+  const fs::path glb = plain ? file : folder_ / "work" / (file.stem().string() + ".glb");
+  if (Status status = write_gltf_levels({&only, 1}, glb, quiet_, GltfLook::Photograph); !status) return status;
+  if (!plain) {
+    if (Status status = wrap_as_b3dm(glb, file); !status) return status;
+    std::error_code fault;
+    fs::remove(glb, fault);
+  }
+  tile_finished(false);
+  return Done{};
+}
+
+bool OutcropWriter::photograph_is_done(std::uint32_t segment) const {
+  for (const auto& [level, tiles] : alone_[segment]) {
+    for (const std::uint32_t tile : tiles) {
+      if (!is_done(tile_file(tile))) return false;
+    }
+  }
+  const bool all_joined =
+      std::all_of(joined_.begin(), joined_.end(), [&](std::uint32_t tile) { return is_done(tile_file(tile)); });
+  for (std::uint32_t level = 0; level < joined_levels_[segment].size() && !all_joined; ++level) {
+    if (joined_levels_[segment][level] != 0 && !is_done(work_file(segment, level))) return false;
+  }
+  return true;
+}
+
+Status OutcropWriter::write_photograph(std::uint32_t segment, unsigned workers) {
+  if (photograph_is_done(segment)) {
+    for (const auto& [level, tiles] : alone_[segment]) {
+      for (std::size_t i = 0; i < tiles.size(); ++i) tile_finished(true);
+    }
+    return Done{};
+  }
+  const std::uint32_t texture = pyramid_->segments()[segment].texture;
+  const TextureInfo& info = infos_[texture];
+  Image photograph;
+  {
+    const Stopwatch watch{mutex_, report_.decode_seconds};
+    auto decoded = decode_texture(textures_[texture]);
+    if (!decoded) return decoded.error();
+    photograph = std::move(*decoded);
+  }
+  if (photograph.width != info.width_px || photograph.height != info.height_px) {
+    return Error{ErrorCode::BadData, "the image changed its size while it was used", textures_[texture].name};
+  }
+  {
+    const std::scoped_lock lock{mutex_};
+    report_.decoded_megapixels += 1e-6 * static_cast<double>(photograph.width) * photograph.height;
+  }
+  const auto timed = [&](auto work) {
+    const Stopwatch watch{mutex_, report_.resample_seconds};
+    return work();
+  };
+  SegmentImages images = timed([&] { return SegmentImages{*pyramid_, segment, std::move(photograph)}; });
+  for (std::uint32_t level = 0; level < pyramid_->levels().size() && !context_.cancelled(); ++level) {
+    const auto tiles = alone_[segment].find(level);
+    const bool here = tiles != alone_[segment].end();
+    const bool later = joined_levels_[segment][level] != 0;
+    if (!here && !later) continue;
+    timed([&] { return images.go_to(*pyramid_, level); });
+    if (later && !is_done(work_file(segment, level))) {
+      if (Status status = store_level(images); !status) return status;
+    }
+    if (!here) continue;
+    const SegmentImages* only[] = {&images};
+    Status status = run_jobs(tiles->second.size(), workers, quiet_, [&](std::size_t i) -> Status {
+      const std::uint32_t tile = tiles->second[i];
+      if (!is_done(tile_file(tile))) return write_tile(tile, only);
+      tile_finished(true);
+      return Done{};
+    });
+    if (!status) return status;
+  }
+  return Done{};
+}
+
+Status OutcropWriter::write_joined(std::uint32_t tile) {
+  if (is_done(tile_file(tile))) {
+    tile_finished(true);
+    return Done{};
+  }
+  std::vector<SegmentImages> images;
+  for (const std::uint32_t s : pyramid_->tiles()[tile].segments) {
+    if (pyramid_->segments()[s].texture == none) continue;
+    auto loaded = load_level(s, pyramid_->tiles()[tile].level);
+    if (!loaded) return loaded.error();
+    images.push_back(std::move(*loaded));
+  }
+  std::vector<const SegmentImages*> pointers;
+  for (const SegmentImages& one : images) pointers.push_back(&one);
+  return write_tile(tile, pointers);
+}
+
+// As many as memory allows: pixels, a third of them while shrinking, the file, and which pixels are used.
+unsigned OutcropWriter::photographs_at_once() const {
+  double largest = 1.0;
+  std::size_t count = 0;
+  for (const OutcropSegment& segment : pyramid_->segments()) {
+    if (segment.texture == none) continue;
+    const TextureInfo& info = infos_[segment.texture];
+    constexpr double per_pixel = 3.0 * 1.4 + 0.2;
+    const double pixels = static_cast<double>(info.width_px) * info.height_px;
+    largest = std::max(largest, pixels * per_pixel + static_cast<double>(info.file_bytes));
+    ++count;
+  }
+  auto workers = static_cast<unsigned>(std::min<std::size_t>(workers_of(context_), std::max<std::size_t>(count, 1)));
+  if (context_.max_memory_bytes > 0) {
+    const double held = static_cast<double>(pyramid_->memory_bytes()) + 64e6;
+    const double room = 0.9 * static_cast<double>(context_.max_memory_bytes) - held;
+    workers = std::min(workers, static_cast<unsigned>(std::max(1.0, room / largest)));
+  }
+  return workers;
+}
+
+Status OutcropWriter::finish() {
+  if (Status status = write_tileset_json(*pyramid_, folder_ / "tileset.json", options_.version, warnings_); !status) {
+    return status;
+  }
+  std::error_code fault;
+  fs::remove_all(folder_ / "work", fault);
+  for (const auto& entry : fs::recursive_directory_iterator{folder_, fault}) {
+    if (entry.is_regular_file(fault)) report_.bytes += entry.file_size(fault);
+  }
+  report_.tiles = static_cast<std::uint32_t>(pyramid_->tiles().size());
+  report_.root_error_m = pyramid_->tiles().back().error_m;
+  report_.levels = pyramid_->levels();
+  report_.segments = pyramid_->segments();
+  return Done{};
+}
+
+Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
+  for (const Texture& texture : mesh.textures) infos_.push_back(measure_texture(texture, warnings_));
+  textures_ = mesh.textures;
+  for (Texture& texture : mesh.textures) texture = {.name = texture.name};
+  report_.source_triangles = mesh.triangle_count();
+  if (Status status = prepare_folder(signature(mesh, infos_, options_)); !status) return status.error();
+  timespec before{};
+  timespec after{};
+  ::clock_gettime(CLOCK_MONOTONIC, &before);
+  auto pyramid = OutcropPyramid::build(std::move(mesh), infos_, options_.pyramid, context_);
+  ::clock_gettime(CLOCK_MONOTONIC, &after);
+  if (!pyramid) return pyramid.error();
+  report_.geometry_seconds =
+      static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
+  pyramid_ = std::move(*pyramid);
+  sort_tiles();
+  const unsigned at_once = photographs_at_once();
+  const unsigned inner = std::max(1U, workers_of(context_) / at_once);
+  Status status = run_jobs(pyramid_->segments().size(), at_once, context_, [&](std::size_t s) -> Status {
+    if (pyramid_->segments()[s].texture == none) return Done{};
+    return write_photograph(static_cast<std::uint32_t>(s), inner);
+  });
+  if (!status) return status.error();
+  status =
+      run_jobs(joined_.size(), workers_of(context_), context_, [&](std::size_t i) { return write_joined(joined_[i]); });
+  if (!status) return status.error();
+  if (Status done = finish(); !done) return done.error();
+  return {std::move(report_), std::move(warnings_)};
+}
+
+}  // namespace
+
+Result<TilesetReport> write_outcrop(Mesh mesh, const fs::path& folder, const TilesetOptions& options,
+                                    const Context& context) {
+  if (options.jpeg_quality < 1 || options.jpeg_quality > 100) {
+    return Error{ErrorCode::BadArgument, "the JPEG quality must be 1 to 100", ""};
+  }
+  return OutcropWriter{folder, options, context}.write(std::move(mesh));
+}
+
+}  // namespace lodestone

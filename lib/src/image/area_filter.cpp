@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// Based on: box filter over the exact footprint of each pixel, fractions of source pixels at its edges included.
+#include "image/area_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+namespace lodestone {
+namespace {
+
+double to_linear(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
+
+// sRGB bytes to linear light and back. Back by a table over the 12 leading bits of the linear value is not enough in
+// the dark, so the byte is found by comparing with the light half way between two bytes, from a first guess.
+struct LightTables {
+  LightTables() {
+    for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(to_linear(i / 255.0));
+    for (int i = 0; i < 255; ++i) limit[i] = static_cast<float>(to_linear((i + 0.5) / 255.0));
+    int byte = 0;
+    for (int i = 0; i < guess_count; ++i) {
+      const float light = static_cast<float>(i) / guess_count;
+      while (byte < 255 && limit[byte] <= light) ++byte;
+      guess[i] = static_cast<std::uint8_t>(byte);
+    }
+  }
+  [[nodiscard]] std::uint8_t byte_of(float light) const noexcept {
+    int byte = guess[std::clamp(static_cast<int>(light * guess_count), 0, guess_count - 1)];
+    while (byte < 255 && limit[byte] <= light) ++byte;
+    return static_cast<std::uint8_t>(byte);
+  }
+  static constexpr int guess_count = 4096;
+  std::array<float, 256> linear{};
+  std::array<float, 255> limit{};
+  std::array<std::uint8_t, guess_count> guess{};
+};
+
+const LightTables& tables() {
+  static const LightTables made;
+  return made;
+}
+
+// The source pixels under pixel i of `count` out of `length`: first, and the weight of each (they sum to 1).
+struct Footprint {
+  std::uint32_t first = 0;
+  std::uint32_t offset = 0;  // into the weights
+  std::uint32_t count = 0;
+};
+struct Footprints {
+  std::vector<Footprint> of;
+  std::vector<float> weights;
+};
+
+Footprints footprints(std::uint32_t length, std::uint32_t count) {
+  Footprints result;
+  result.of.reserve(count);
+  const double step = static_cast<double>(length) / count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double begin = i * step;
+    const double end = std::min<double>(length, (i + 1) * step);
+    const auto first = static_cast<std::uint32_t>(begin);
+    const auto last = std::min(length, static_cast<std::uint32_t>(std::ceil(end - 1e-9)));
+    result.of.push_back({first, static_cast<std::uint32_t>(result.weights.size()), last - first});
+    for (std::uint32_t p = first; p < last; ++p) {
+      const double covered = std::min<double>(end, p + 1.0) - std::max<double>(begin, p);
+      result.weights.push_back(static_cast<float>(covered / (end - begin)));
+    }
+  }
+  return result;
+}
+
+// One source row made narrower, in linear light, added to `sums` with a weight. Colours are weighted by alpha.
+void add_row(const Image& source, std::uint32_t y, const Footprints& across, float weight, std::vector<float>& sums) {
+  const auto& linear = tables().linear;
+  const std::uint32_t channels = source.channels;
+  const bool has_alpha = channels == 2 || channels == 4;
+  const std::uint32_t colors = has_alpha ? channels - 1 : channels;
+  float* sum = sums.data();
+  for (const Footprint& print : across.of) {
+    const std::uint8_t* from = source.at(print.first, y);
+    const float* w = &across.weights[print.offset];
+    for (std::uint32_t i = 0; i < print.count; ++i, from += channels) {
+      const float share = weight * w[i];
+      const float opaque = has_alpha ? share * static_cast<float>(from[colors]) / 255.0F : share;
+      for (std::uint32_t c = 0; c < colors; ++c) sum[c] += opaque * linear[from[c]];
+      if (has_alpha) sum[colors] += opaque;
+    }
+    sum += channels;
+  }
+}
+
+void store_row(const std::vector<float>& sums, Image& out, std::uint32_t y) {
+  const LightTables& light = tables();
+  const std::uint32_t channels = out.channels;
+  const bool has_alpha = channels == 2 || channels == 4;
+  const std::uint32_t colors = has_alpha ? channels - 1 : channels;
+  const float* sum = sums.data();
+  std::uint8_t* to = out.at(0, y);
+  for (std::uint32_t x = 0; x < out.width; ++x, sum += channels, to += channels) {
+    const float alpha = has_alpha ? sum[colors] : 1.0F;
+    for (std::uint32_t c = 0; c < colors; ++c) to[c] = light.byte_of(alpha > 0.0F ? sum[c] / alpha : 0.0F);
+    if (has_alpha) to[colors] = static_cast<std::uint8_t>(std::lround(std::clamp(alpha, 0.0F, 1.0F) * 255.0F));
+  }
+}
+
+}  // namespace
+
+Image shrink(const Image& source, std::uint32_t width, std::uint32_t height) {
+  assert(width >= 1 && height >= 1 && width <= source.width && height <= source.height);
+  Image out{width, height, source.channels, {}};
+  out.pixels.resize(static_cast<std::size_t>(width) * height * source.channels);
+  const Footprints across = footprints(source.width, width);
+  const Footprints down = footprints(source.height, height);
+  std::vector<float> sums(static_cast<std::size_t>(width) * source.channels);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    std::fill(sums.begin(), sums.end(), 0.0F);
+    const Footprint& print = down.of[y];
+    for (std::uint32_t i = 0; i < print.count; ++i) {
+      add_row(source, print.first + i, across, down.weights[print.offset + i], sums);
+    }
+    store_row(sums, out, y);
+  }
+  return out;
+}
+
+}  // namespace lodestone

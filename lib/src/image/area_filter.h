@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// Making pictures smaller without changing their brightness.
+#pragma once
+
+#include <lodestone/image.h>
+
+namespace lodestone {
+
+// Every pixel of the result is the mean, in linear light, of the rectangle of the source that it covers; alpha weighs
+// colours. Precondition: width and height are at least 1 and at most the source's.
+[[nodiscard]] Image shrink(const Image& source, std::uint32_t width, std::uint32_t height);
+
+}  // namespace lodestone

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <lodestone/formats.h>
+#include <lodestone/tileset_writer.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "data.h"
+#include "fixture.h"
+#include "shapes.h"
+
+namespace lodestone::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TilesetOptions options() { return {.pyramid = small_tiles()}; }
+
+TilesetReport write(const fs::path& folder, const TilesetOptions& with = options(), unsigned workers = 2) {
+  auto written = write_outcrop(small_cliff(), folder, with, {.max_workers = workers});
+  if (!written) FAIL(to_line(written.error()));
+  return std::move(*written);
+}
+
+void change(const fs::path& file, void (*how)(nlohmann::ordered_json&)) {
+  std::ifstream in{file};
+  auto json = nlohmann::ordered_json::parse(in);
+  in.close();
+  how(json["root"]);
+  std::ofstream{file} << json.dump();
+}
+
+}  // namespace
+
+TEST_CASE("A tileset holds the source, fits without a seam, and passes its own check") {
+  const fs::path folder = scratch_folder("tileset_check");
+  const TilesetReport written = write(folder);
+  CHECK(written.source_triangles == small_cliff().triangle_count());
+  CHECK(written.tiles > 10);
+  const auto check = check_tileset(folder / "tileset.json");
+  REQUIRE(check);
+  CHECK(check->tiles == written.tiles);
+  CHECK(check->triangles == small_cliff().triangle_count());
+  CHECK(check->contents_outside_box == 0);
+  CHECK(check->children_outside_parent == 0);
+  CHECK(check->errors_not_monotone == 0);
+  CHECK(check->seams_open == 0);
+  CHECK(check->faults.empty());
+  CHECK(!fs::exists(folder / "work"));
+}
+
+TEST_CASE("The check of a tileset finds what is wrong with it") {
+  const fs::path folder = scratch_folder("tileset_faults");
+  static_cast<void>(write(folder));
+  const fs::path file = folder / "tileset.json";
+  const std::string good = files_of(folder)["tileset.json"];
+  const auto damaged = [&](void (*how)(nlohmann::ordered_json&)) {
+    std::ofstream{file} << good;
+    change(file, how);
+    auto check = check_tileset(file);
+    REQUIRE(check);
+    return *check;
+  };
+  CHECK(damaged([](auto& root) { root["children"][0]["boundingVolume"]["box"][0] = 5e3; }).children_outside_parent > 0);
+  CHECK(damaged([](auto& root) { root["children"][0]["boundingVolume"]["box"][3] = 1e-3; }).contents_outside_box > 0);
+  CHECK(damaged([](auto& root) { root["children"][0]["geometricError"] = 1e9; }).errors_not_monotone > 0);
+  CHECK(damaged([](auto& root) { root["children"][0]["children"].erase(0); }).seams_open > 0);
+  std::ofstream{file} << good.substr(0, good.size() / 2);
+  CHECK(check_tileset(file).error().code == ErrorCode::BadData);
+  CHECK(check_tileset(folder / "nothing.json").error().code == ErrorCode::NotFound);
+}
+
+TEST_CASE("The same bytes come out for 1, 2 and 8 workers, and after a build that was stopped anywhere") {
+  const fs::path one = scratch_folder("tileset_one");
+  static_cast<void>(write(one, options(), 1));
+  const auto wanted = files_of(one);
+  for (const unsigned workers : {2U, 8U}) {
+    const fs::path other = scratch_folder("tileset_other");
+    static_cast<void>(write(other, options(), workers));
+    CHECK(files_of(other) == wanted);
+  }
+  // What a killed build leaves: some tiles, a half-written one, no tileset.json.
+  const fs::path stopped = scratch_folder("tileset_stopped");
+  static_cast<void>(write(stopped));
+  fs::remove(stopped / "tileset.json");
+  std::size_t number = 0;
+  for (const auto& [name, content] : wanted) {
+    if (name.starts_with("tiles/") && number++ % 3 == 0) fs::remove(stopped / name);
+  }
+  std::ofstream{stopped / "tiles/L0_0.glb.part1-1"} << "half";
+  TilesetOptions resume = options();
+  resume.resume = true;
+  const TilesetReport report = write(stopped, resume);
+  CHECK(report.kept_tiles > 0);
+  CHECK(report.kept_tiles < report.tiles);
+  CHECK(files_of(stopped) == wanted);
+
+  resume.jpeg_quality = 50;
+  const auto refused = write_outcrop(small_cliff(), stopped, resume);
+  REQUIRE(!refused);
+  CHECK(refused.error().code == ErrorCode::BadArgument);
+}
+
+TEST_CASE("A cancelled or failed build leaves no tileset behind") {
+  const fs::path folder = scratch_folder("tileset_cancelled");
+  const std::atomic<bool> cancelled{true};
+  const auto written = write_outcrop(small_cliff(), folder, options(), {.cancel = &cancelled});
+  REQUIRE(!written);
+  CHECK(written.error().code == ErrorCode::Cancelled);
+  CHECK(!fs::exists(folder / "tileset.json"));
+
+  std::ofstream{folder / "file"} << "in the way";
+  CHECK(write_outcrop(small_cliff(), folder / "file", options()).error().code == ErrorCode::Unreadable);
+}
+
+TEST_CASE("The root's transform places the outcrop on the globe, or keeps the origin") {
+  const fs::path folder = scratch_folder("tileset_place");
+  static_cast<void>(write(folder));
+  const auto transform = [&] {
+    std::ifstream in{folder / "tileset.json"};
+    return nlohmann::json::parse(in)["root"]["transform"].get<std::vector<double>>();
+  };
+  std::vector<double> t = transform();
+  const glm::dvec3 east{t[0], t[1], t[2]};
+  const glm::dvec3 up{t[8], t[9], t[10]};
+  const glm::dvec3 place{t[12], t[13], t[14]};
+  CHECK(glm::length(east) == Approx(1.0).margin(1e-3));
+  CHECK(std::abs(glm::dot(east, up)) < 1e-3);
+  CHECK(glm::dot(up, glm::normalize(place)) > 0.999);  // up is away from the middle of the earth
+  CHECK(glm::length(place) == Approx(6.367e6).margin(2e4));
+
+  Mesh nowhere = small_cliff();
+  nowhere.crs.clear();
+  REQUIRE(write_outcrop(nowhere, folder, options()));
+  t = transform();
+  CHECK(t[0] == 1.0);
+  CHECK(t[12] == nowhere.origin.x);
+  nowhere.crs = "EPSG:0";
+  const auto written = write_outcrop(nowhere, folder, options());
+  REQUIRE(written);
+  CHECK(written.warnings().size() == 1);
+}
+
+TEST_CASE("Older clients get batched models with the same content") {
+  const fs::path glb = scratch_folder("tileset_glb");
+  const fs::path b3dm = scratch_folder("tileset_b3dm");
+  static_cast<void>(write(glb));
+  TilesetOptions older = options();
+  older.version = TilesVersion::V1_0;
+  static_cast<void>(write(b3dm, older));
+  const auto check = check_tileset(b3dm / "tileset.json");
+  REQUIRE(check);
+  CHECK(check->faults.empty());
+  const auto plain = files_of(glb);
+  const auto wrapped = files_of(b3dm);
+  const std::string& tile = wrapped.at("tiles/L0_0.b3dm");
+  CHECK(tile.size() % 8 == 0);
+  CHECK(tile.find(plain.at("tiles/L0_0.glb")) % 8 == 0);
+}
+
+TEST_CASE("Odd photographs are used, broken ones are refused or left out by name") {
+  const fs::path folder = scratch_folder("tileset_photos");
+  const fs::path corpus = fs::path{LODESTONE_CORPUS} / "image";
+  Mesh mesh = grid(12, 12);
+  mesh.materials = {{.name = "rock", .texture = 0}};
+  const auto with = [&](const fs::path& file) {
+    mesh.textures = {{.name = file.filename().string(), .path = file.string()}};
+    return write_outcrop(mesh, folder, options());
+  };
+  for (const char* name : {"cmyk.jpg", "grey.jpg", "grey16.png", "palette.png", "small.webp", "rgb.png"}) {
+    INFO(name);
+    const auto written = with(corpus / name);
+    REQUIRE(written);
+    CHECK(written.warnings().empty());
+    CHECK(written->decoded_megapixels > 0.0);
+  }
+  const auto missing = with(corpus / "nothing.jpg");
+  REQUIRE(missing);
+  CHECK(missing.warnings().size() == 1);
+  CHECK(missing->segments.front().texture == none);
+
+  Image noisy{64, 64, 3, {}};
+  for (std::uint32_t i = 0; i < 64 * 64 * 3; ++i)
+    noisy.pixels.push_back(static_cast<std::uint8_t>(i * 2654435761U >> 24U));
+  const fs::path cut = folder / "cut.jpg";
+  REQUIRE(write_image(noisy, cut));
+  fs::resize_file(cut, fs::file_size(cut) / 2);
+  const auto refused = with(cut);
+  REQUIRE(!refused);
+  CHECK(refused.error().code == ErrorCode::BadData);
+  CHECK(refused.error().where.find("cut.jpg") != std::string::npos);
+}
+
+}  // namespace lodestone::test
