@@ -244,7 +244,7 @@ class Keys(Contract):
         cliff = self.scratch / "cliff.obj"
         run("generate", "outcrop", "--triangles", 5000, "--texture-size", 64, "-o", cliff)
         found = self.keys("tiles levels bytes root_error_m source_triangles seams_open",
-                          "outcrop", cliff, "-o", self.scratch / "tiles", "--tile-bytes", "20kB")
+                          "outcrop", cliff, "-o", self.scratch / "tiles", "--tile-bytes", "20KB")
         self.assertEqual(found["seams_open"], 0)
         self.assertEqual(found["warnings"], [])
         self.assertEqual(len(found["pyramid"]), found["levels"])

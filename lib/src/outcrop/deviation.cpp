@@ -4,7 +4,9 @@
 #include "outcrop/deviation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 
@@ -51,17 +53,36 @@ TriangleBvh chains_of(const Tiled& tiled) {
   return {positions, indices};
 }
 
+// A tile's chain is held against the chain of the same tile: another's may lie nearer.
 void raise_borders(std::vector<TileDeviation>& per_tile, const Tiled& from, const Tiled& to, const Context& context) {
   if (from.borders.empty() || to.borders.empty()) return;
-  const std::vector<double> distance = distances(chains_of(to), 2 * from.borders.size(), context, [&](std::size_t i) {
-    const BorderEdge& edge = from.borders[i / 2];
-    return place(from, i % 2 == 0 ? edge.a : edge.b);
-  });
-  for (std::size_t i = 0; i < distance.size(); ++i) {
-    const BorderEdge& edge = from.borders[i / 2];
-    for (const std::uint32_t tile : {edge.left, edge.right}) {
-      per_tile[tile].border_m = std::max(per_tile[tile].border_m, distance[i]);
+  // Both ends and the middle: between two ends the other chain may turn away.
+  constexpr std::size_t samples = 3;
+  constexpr std::size_t chunk = 256;
+  const TriangleBvh chains = chains_of(to);
+  std::vector<std::array<double, 2>> most(from.borders.size(), {0.0, 0.0});  // left, right
+  parallel_chunks(most.size(), chunk, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const BorderEdge& edge = from.borders[i];
+      const glm::dvec3 a{place(from, edge.a)};
+      const glm::dvec3 b{place(from, edge.b)};
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::uint32_t tile = side == 0 ? edge.left : edge.right;
+        for (std::size_t k = 0; k < samples; ++k) {
+          const glm::dvec3 p = a + (b - a) * (static_cast<double>(k) / (samples - 1));
+          const auto nearest = chains.nearest_of(p, std::numeric_limits<double>::infinity(), [&](FaceId f) {
+            return to.borders[f].left == tile || to.borders[f].right == tile;
+          });
+          if (nearest.face != none) most[i][side] = std::max(most[i][side], std::sqrt(nearest.squared_distance));
+        }
+      }
     }
+  });
+  for (std::size_t i = 0; i < most.size(); ++i) {
+    double& left = per_tile[from.borders[i].left].border_m;
+    double& right = per_tile[from.borders[i].right].border_m;
+    left = std::max(left, most[i][0]);
+    right = std::max(right, most[i][1]);
   }
 }
 

@@ -29,6 +29,7 @@ constexpr std::uint64_t least_tile_bytes = 128'000;
 constexpr std::uint64_t most_tile_bytes = 1'000'000;
 constexpr std::uint64_t tiles_aimed_at = 64;
 constexpr std::uint32_t most_levels = 96;
+constexpr double border_slack = 1.1;       // chains are measured at samples
 constexpr double error_step = 1.0 + 1e-4;  // a parent's error is at least so many times a child's
 
 Error bad_argument(std::string message) { return {ErrorCode::BadArgument, std::move(message), ""}; }
@@ -342,7 +343,7 @@ void OutcropBuilder::link_children() {
   borders_below_m_.clear();
   for (std::uint32_t i = 0; i < tile_count(); ++i) {
     double& error_m = out_->tiles_[here + i].error_m;
-    if (out_->levels_.size() > 1) error_m = std::max(error_m, deviations_[i].border_m + below_m[i]);
+    if (out_->levels_.size() > 1) error_m = std::max(error_m, border_slack * (deviations_[i].border_m + below_m[i]));
     borders_below_m_.push_back(std::max(below_m[i], deviations_[i].border_m));
   }
 }
