@@ -29,6 +29,12 @@ class RecordCodec : protected Replay<Space, Io> {
     Base::make_room(topology_.vertex_count() + vertices);
     store_.open_block(vertices);
   }
+  [[nodiscard]] VertexId last_split() const noexcept { return last_split_; }
+  // One step of a LookAhead.
+  template <class Ahead>
+  void fetch_ahead(Ahead& ahead) const noexcept {
+    ahead.step(topology_, [this](VertexId v) { __builtin_prefetch(Base::value(v)); });
+  }
   // Whether the block had just as many.
   [[nodiscard]] bool full() const noexcept { return !topology_.has_room_for_vertices(1); }
 
@@ -79,7 +85,7 @@ class RecordCodec : protected Replay<Space, Io> {
       Guess back = Base::guess_like(split);
       back.position += back.position - Base::position(added);
       back.across = guess.across;
-      code_move(io, MovedValues, split, back, true);
+      code_move(io, MovedValues, split, back);
     }
     return fine;
   }
@@ -227,19 +233,21 @@ class RecordCodec : protected Replay<Space, Io> {
 
   void code_new(Io& io, std::uint32_t group, VertexId slot, const Guess& guess, bool with_position) {
     std::uint32_t* words = Base::value(slot);
-    const std::array<std::uint32_t, 3> position{words[0], words[1], words[2]};
     store_.before_new(slot, words);
-    Base::codec_.code(io, group, guess, words, with_position);
-    if (!with_position) std::copy(position.begin(), position.end(), words);
-    store_.after_new(slot, words);
+    const PositionWords position = with_position ? Base::codec_.code_position(io, group, guess, words)
+                                                 : PositionWords{words[0], words[1], words[2]};
+    position.store(words);
+    Base::codec_.code_attributes(io, group, guess, words);
+    store_.after_new(slot, position, words);
   }
 
-  void code_move(Io& io, std::uint32_t group, VertexId slot, const Guess& guess, bool with_position) {
+  void code_move(Io& io, std::uint32_t group, VertexId slot, const Guess& guess) {
     std::array<std::uint32_t, max_value_words> before;
     std::uint32_t* words = Base::value(slot);
     std::copy_n(words, Base::stride_, before.begin());
     store_.before_move(slot, words);
-    Base::codec_.code(io, group, guess, words, with_position);
+    Base::codec_.code_position(io, group, guess, words).store(words);
+    Base::codec_.code_attributes(io, group, guess, words);
     store_.after_move(before.data(), words);
   }
 
@@ -294,7 +302,7 @@ class RecordCodec : protected Replay<Space, Io> {
     for (std::size_t i = 0; i < moved.size(); ++i) {
       moved[i] = Base::code_name(io, EditMoved, Base::words_.vertices, moved[i], Base::last_vertex_);
       if (moved[i] >= first) return "a vertex moves that one of the levels does not use";
-      code_move(io, EditValues, moved[i], Base::guess_like(moved[i]), true);
+      code_move(io, EditValues, moved[i], Base::guess_like(moved[i]));
     }
     return fine;
   }

@@ -192,7 +192,7 @@ class Replay {
   bool multi_material_;
   ValueCodec<Space, Io> codec_;
   Topology topology_;
-  std::vector<std::uint32_t> values_;
+  LargeVector<std::uint32_t> values_;
   Vocabulary words_;
   VertexId last_split_ = 0;
   VertexId last_vertex_ = 0;  // strangers among the vertices an edit names

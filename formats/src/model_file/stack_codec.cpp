@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "edit_words.h"
+#include "look_ahead.h"
 #include "record_codec.h"
 #include "stores.h"
 
@@ -157,7 +158,10 @@ class Reader final : public StackReader::Implementation {
     ColumnSource io{&columns};
     codec_.open_block(summary.vertices);
     if (count != columns[Kind].left()) return "a block has another number of records than it should";
+    LookAhead ahead{columns, codec_.last_split()};
+    for (std::uint32_t i = 0; i < LookAhead::lead; ++i) codec_.fetch_ahead(ahead);
     for (std::uint32_t i = 0; i < count; ++i) {
+      codec_.fetch_ahead(ahead);
       if (const char* fault = record(io); fault != nullptr) return fault;
     }
     return close(io, summary);
@@ -179,9 +183,21 @@ class Reader final : public StackReader::Implementation {
     data_.shapes.push_back(static_cast<std::uint8_t>(fan_.count |
                                                      static_cast<unsigned>(kind) << RecordShape::kind_shift |
                                                      (fan_.moves ? RecordShape::moves_flag : 0U)));
-    store_corners(data_, std::span{fan_.corners}.first(fan_.count));
+    keep_corners();
     if (data_.base_face_counts.size() > 1) data_.fan_materials.push_back(static_cast<std::uint16_t>(fan_.material));
     return nullptr;
+  }
+
+  // The array is kept longer than it is, by at least one fan, until the block ends.
+  void keep_corners() {
+    const std::size_t most = std::size_t{4} * max_fan_corners;
+    if (data_.fan_corners.size() < corner_end_ + most) data_.fan_corners.resize(2 * (corner_end_ + most));
+    std::uint8_t* to = &data_.fan_corners[corner_end_];
+    for (std::uint32_t i = 0; i < fan_.count; ++i, to += data_.corner_bytes) {
+      // Four bytes even where three count; the next corner follows on.
+      for (std::uint32_t b = 0; b < 4; ++b) to[b] = static_cast<std::uint8_t>(fan_.corners[i] >> (8 * b));
+    }
+    corner_end_ += std::size_t{fan_.count} * data_.corner_bytes;
   }
 
   void store_edit() {
@@ -196,6 +212,7 @@ class Reader final : public StackReader::Implementation {
 
   std::string close(ColumnSource& io, const BlockSummary& summary) {
     for (std::uint32_t i = 0; i < summary.error_steps; ++i) data_.errors.push_back(codec_.error_step(io, {}));
+    data_.fan_corners.resize(corner_end_);
     if (!codec_.full()) return "a block adds fewer vertices than it should";
     for (const ColumnReader& column : *io.columns) {
       if (column.overrun() || column.left() != 0) return "a block holds more or less than its records";
@@ -208,6 +225,7 @@ class Reader final : public StackReader::Implementation {
   RecordCodec<Space, ColumnSource, ReadStore<Space>> codec_;
   Fan fan_;
   Edit edit_;
+  std::size_t corner_end_ = 0;  // bytes of data_.fan_corners in use
 };
 
 }  // namespace

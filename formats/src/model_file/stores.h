@@ -2,6 +2,7 @@
 // Where a record codec takes values from (writing) or puts them (reading): the arrays of a ModelData.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -27,7 +28,7 @@ class WriteStore {
     get_floats(data_.vertices, slot, now);
     convert(now, words);
   }
-  void after_new(VertexId /*slot*/, const std::uint32_t* /*words*/) const noexcept {}
+  void after_new(VertexId /*slot*/, PositionWords /*position*/, const std::uint32_t* /*words*/) const noexcept {}
 
   void before_move(VertexId slot, std::uint32_t* words) noexcept {
     std::uint32_t* now = floats(slot);
@@ -82,9 +83,16 @@ class ReadStore {
     if (floats_.colors) data_.vertices.colors.resize(count);
   }
   void before_new(VertexId /*slot*/, std::uint32_t* /*words*/) const noexcept {}
-  void after_new(VertexId slot, const std::uint32_t* words) noexcept {
+  void after_new(VertexId slot, PositionWords position, const std::uint32_t* words) noexcept {
+    if constexpr (Space::on_grid) {
+      data_.vertices.positions[slot] = grid_point(grid_, position);
+    } else {
+      data_.vertices.positions[slot] = {std::bit_cast<float>(position.x), std::bit_cast<float>(position.y),
+                                        std::bit_cast<float>(position.z)};
+    }
+    if (floats_.words() == 3) return;
     std::uint32_t now[max_value_words];
-    set_floats(data_.vertices, floats_, slot, convert(words, now));
+    set_attributes(data_.vertices, floats_, slot, convert(words, now));
   }
 
   void before_move(VertexId /*slot*/, std::uint32_t* /*words*/) const noexcept {}

@@ -12,6 +12,8 @@
 
 #include <lodestone/types.h>
 
+#include "large_pages.h"
+
 namespace lodestone::model_file {
 
 // A vertex with more corners than this loses its list for good and its corners are named by number. It bounds the
@@ -77,6 +79,20 @@ class Topology {
     return {list(vertex), counts_[vertex]};
   }
 
+  // Vertices there is room for, whether they exist yet or not.
+  [[nodiscard]] std::uint32_t capacity() const noexcept { return static_cast<std::uint32_t>(counts_.size()); }
+  // Whether a vertex (of any number) is there with a list of up to eight corners.
+  [[nodiscard]] bool has_short_list(VertexId vertex) const noexcept {
+    return vertex < vertex_count_ && counts_[vertex] <= inline_corners;
+  }
+  // See to it that memory soon to be read is near. Precondition: below capacity(). Inlined because a compiler may take
+  // a call that only fetches for one without effect.
+  [[gnu::always_inline]] void fetch_list(VertexId vertex) const noexcept {
+    __builtin_prefetch(&stars_[vertex], 1);
+    __builtin_prefetch(&counts_[vertex], 1);
+  }
+  [[gnu::always_inline]] void fetch_face(CornerId corner) const noexcept { __builtin_prefetch(&vertices_[corner], 1); }
+
   // The corner leaves its vertex's list, whose others keep their order, and becomes the last of that of `to`.
   void repoint(CornerId corner, VertexId to);
 
@@ -130,9 +146,9 @@ class Topology {
   void shorten(VertexId vertex, std::uint32_t count);
 
   std::vector<FaceId> next_face_, face_begin_;
-  std::vector<VertexId> vertices_;  // per corner
+  LargeVector<VertexId> vertices_;  // per corner
   std::uint32_t vertex_count_ = 0;
-  std::vector<Inline> stars_;  // per vertex
+  LargeVector<Inline> stars_;  // per vertex
   std::vector<std::uint16_t>
       counts_;  // wider than need be: bytes would alias everything the compiler keeps in registers
   std::vector<CornerId> pool_;

@@ -55,42 +55,57 @@ class ValueCodec {
  public:
   explicit ValueCodec(const ValueLayout& layout) : layout_(layout) {}
 
-  // `group`: NewValues, MovedValues or EditValues.
-  void code(Io& io, std::uint32_t group, const Guess& guess, std::uint32_t* words, bool with_position) const {
-    if (with_position) code_position(io, group, guess, words);
+  // `group`: NewValues, MovedValues or EditValues. Two coordinates along the plane come first; they tell where on the
+  // plane the third should be. Inlined so that the words stay in registers.
+  [[gnu::always_inline]] PositionWords code_position(Io& io, std::uint32_t group, const Guess& guess,
+                                                     const std::uint32_t* words) const {
+    const int depth = main_axis(guess.across);
+    const int i = depth == 2 ? 0 : depth + 1;
+    const int j = depth == 0 ? 2 : depth - 1;
+    const std::uint32_t first = code_word(io, group, words[i], guess.position[i]);
+    const std::uint32_t second = code_word(io, group + 1, words[j], guess.position[j]);
+    double slope = 0.0;
+    if (guess.across[depth] != 0.0) {
+      slope = (guess.across[i] * (Space::number(first) - guess.position[i]) +
+               guess.across[j] * (Space::number(second) - guess.position[j])) /
+              guess.across[depth];
+    }
+    const std::uint32_t third = code_word(io, group + 2, words[depth], guess.position[depth] - slope);
+    return {depth == 0   ? third
+            : depth == 1 ? second
+                         : first,
+            depth == 1   ? third
+            : depth == 2 ? second
+                         : first,
+            depth == 2   ? third
+            : depth == 0 ? second
+                         : first};
+  }
+
+  // Everything else, in place.
+  void code_attributes(Io& io, std::uint32_t group, const Guess& guess, std::uint32_t* words) const {
     if (layout_.normals) code_normal(io, group + 3, guess, words + layout_.normal());
     if (layout_.uvs) {
-      for (int i = 0; i < 2; ++i) code_word(io, group + 6 + i, words[layout_.uv() + i], guess.uv[i]);
+      for (int i = 0; i < 2; ++i) {
+        std::uint32_t& word = words[layout_.uv() + i];
+        word = code_word(io, group + 6 + i, word, guess.uv[i]);
+      }
     }
     if (layout_.colors) code_color(io, group + 8, guess, words[layout_.color()]);
   }
 
  private:
-  static void code_word(Io& io, std::uint32_t column, std::uint32_t& word, double guess) {
+  static std::uint32_t code_word(Io& io, std::uint32_t column, std::uint32_t word, double guess) {
     const std::uint32_t predicted = Space::nearest(guess);
-    word = Space::restore(io.code(column, Space::residual(word, predicted)), predicted);
-  }
-
-  // Two coordinates along the plane first; they tell where on the plane the third should be.
-  static void code_position(Io& io, std::uint32_t column, const Guess& guess, std::uint32_t* words) {
-    const int depth = main_axis(guess.across);
-    const int i = depth == 2 ? 0 : depth + 1;
-    const int j = depth == 0 ? 2 : depth - 1;
-    code_word(io, column, words[i], guess.position[i]);
-    code_word(io, column + 1, words[j], guess.position[j]);
-    double slope = 0.0;
-    if (guess.across[depth] != 0.0) {
-      slope = (guess.across[i] * (Space::number(words[i]) - guess.position[i]) +
-               guess.across[j] * (Space::number(words[j]) - guess.position[j])) /
-              guess.across[depth];
-    }
-    code_word(io, column + 2, words[depth], guess.position[depth] - slope);
+    return Space::restore(io.code(column, Space::residual(word, predicted)), predicted);
   }
 
   // The longest component of a unit vector follows from the two others up to rounding.
   void code_normal(Io& io, std::uint32_t column, const Guess& guess, std::uint32_t* words) const {
     if (layout_.normal_words == 2) {
-      for (int i = 0; i < 2; ++i) code_word(io, column + i, words[i], static_cast<std::int32_t>(guess.octahedral[i]));
+      for (int i = 0; i < 2; ++i) {
+        words[i] = code_word(io, column + i, words[i], static_cast<std::int32_t>(guess.octahedral[i]));
+      }
       return;
     }
     const int depth = main_axis(guess.normal);
@@ -99,13 +114,13 @@ class ValueCodec {
     const double square =
         guess.normal.x * guess.normal.x + guess.normal.y * guess.normal.y + guess.normal.z * guess.normal.z;
     const double length = square > 0.0 ? std::sqrt(square) : 1.0;
-    code_word(io, column, words[i], guess.normal[i] / length);
-    code_word(io, column + 1, words[j], guess.normal[j] / length);
+    words[i] = code_word(io, column, words[i], guess.normal[i] / length);
+    words[j] = code_word(io, column + 1, words[j], guess.normal[j] / length);
     const double x = Space::number(words[i]);
     const double y = Space::number(words[j]);
     const double rest = 1.0 - x * x - y * y;
     const double longest = rest > 0.0 ? std::sqrt(rest) : 0.0;
-    code_word(io, column + 2, words[depth], guess.normal[depth] < 0.0 ? -longest : longest);
+    words[depth] = code_word(io, column + 2, words[depth], guess.normal[depth] < 0.0 ? -longest : longest);
   }
 
   static void code_color(Io& io, std::uint32_t column, const Guess& guess, std::uint32_t& word) {

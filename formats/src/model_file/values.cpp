@@ -100,9 +100,8 @@ void to_grid(const Grid& grid, const ValueLayout& layout, const std::uint32_t* f
 
 void from_grid(const Grid& grid, const ValueLayout& layout, const std::uint32_t* words,
                std::uint32_t* floats) noexcept {
-  for (int i = 0; i < 3; ++i) {
-    floats[i] = FloatSpace::nearest(grid.corner[i] + static_cast<std::int32_t>(words[i]) * grid.step_m);
-  }
+  const glm::vec3 point = grid_point(grid, {words[0], words[1], words[2]});
+  for (int i = 0; i < 3; ++i) floats[i] = std::bit_cast<std::uint32_t>(point[i]);
   std::uint32_t* to = floats + 3;
   if (layout.normals) {
     float n[3];

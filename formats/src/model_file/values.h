@@ -43,11 +43,22 @@ inline constexpr std::uint32_t max_value_words = 9;
 // `normal_words`: 3 in float space, 2 on a grid.
 [[nodiscard]] ValueLayout layout_of(const VertexArrays& vertices, std::uint32_t normal_words);
 
+// The words of a position, kept apart from the others because what was stored word by word a moment ago is slow to load
+// again in one piece, and a struct of three copied as bytes would be.
+struct PositionWords {
+  std::uint32_t x = 0, y = 0, z = 0;
+  void store(std::uint32_t* words) const noexcept {
+    words[0] = x;
+    words[1] = y;
+    words[2] = z;
+  }
+};
+
 // A value as floats (the words of ModelData::value_xor).
 void get_floats(const VertexArrays& vertices, VertexId slot, std::uint32_t* words) noexcept;
-inline void set_floats(VertexArrays& vertices, const ValueLayout& floats, VertexId slot,
-                       const std::uint32_t* words) noexcept {
-  std::memcpy(&vertices.positions[slot], words, 12);
+// All but the position of such a value.
+inline void set_attributes(VertexArrays& vertices, const ValueLayout& floats, VertexId slot,
+                           const std::uint32_t* words) noexcept {
   if (floats.normals) std::memcpy(&vertices.normals[slot], words + floats.normal(), 12);
   if (floats.uvs) std::memcpy(&vertices.uvs[slot], words + floats.uv(), 8);
   if (floats.colors) std::memcpy(&vertices.colors[slot], words + floats.color(), 4);
@@ -55,6 +66,7 @@ inline void set_floats(VertexArrays& vertices, const ValueLayout& floats, Vertex
 
 // Grid words of a value given as float words, and back. `layout` is that of the grid words.
 void to_grid(const Grid& grid, const ValueLayout& layout, const std::uint32_t* floats, std::uint32_t* words) noexcept;
+[[nodiscard]] glm::vec3 grid_point(const Grid& grid, PositionWords words) noexcept;
 void from_grid(const Grid& grid, const ValueLayout& layout, const std::uint32_t* words, std::uint32_t* floats) noexcept;
 
 // The grid of a model: `bits` per coordinate of the longest side of its box.
@@ -99,5 +111,13 @@ struct GridSpace {
     return predicted + unzigzag(residual);
   }
 };
+
+inline glm::vec3 grid_point(const Grid& grid, PositionWords words) noexcept {
+  const auto coordinate = [&grid](int axis, std::uint32_t word) {
+    const double x = grid.corner[axis] + static_cast<std::int32_t>(word) * grid.step_m;
+    return std::bit_cast<float>(FloatSpace::nearest(x));
+  };
+  return {coordinate(0, words.x), coordinate(1, words.y), coordinate(2, words.z)};
+}
 
 }  // namespace lodestone::model_file
