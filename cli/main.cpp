@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   verbs.push_back(make_compare());
   verbs.push_back(make_outcrop());
   verbs.push_back(make_distances());
+  verbs.push_back(make_terrain());
   verbs.push_back(make_view());
   return run_program(verbs, argc, argv);
 }

@@ -1,9 +1,11 @@
 # What lodestone::formats is linked with; read when it is built and again when its package is found.
 find_package(PkgConfig REQUIRED)
 find_package(assimp REQUIRED)
+find_package(GDAL CONFIG REQUIRED)
 find_package(GIF REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(TinyGLTF REQUIRED)
+find_package(ZLIB REQUIRED)
 pkg_check_modules(proj REQUIRED IMPORTED_TARGET proj)
 pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)

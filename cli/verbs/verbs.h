@@ -20,6 +20,7 @@ namespace lodestone::cli {
 [[nodiscard]] std::unique_ptr<Verb> make_compare();
 [[nodiscard]] std::unique_ptr<Verb> make_outcrop();
 [[nodiscard]] std::unique_ptr<Verb> make_distances();
+[[nodiscard]] std::unique_ptr<Verb> make_terrain();
 [[nodiscard]] std::unique_ptr<Verb> make_view();
 
 }  // namespace lodestone::cli

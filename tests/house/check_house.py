@@ -45,6 +45,8 @@ NAMES = {
     r"metis\.h": ["lib/src/partition/"],
     r"cereal/": ["formats/src/model_file/"],
     r"GL/osmesa\.h": ["viewer/headless/"],
+    r"gdal|ogr_|cpl_": ["formats/src/raster/"],
+    r"zlib\.h": ["formats/src/quantized_mesh/"],
     r"GLFW/": ["viewer/window/"],
     r"imgui": ["viewer/"],
     r"GL/|GLES\d?/|epoxy/|glad/": ["viewer/"],

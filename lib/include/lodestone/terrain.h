@@ -191,6 +191,8 @@ class TerrainPyramid {
   [[nodiscard]] double tolerance_m(std::uint32_t zoom) const { return zooms_[zoom].tolerance_m; }
   [[nodiscard]] double height_step_m(std::uint32_t zoom) const { return zooms_[zoom].step_m; }
   [[nodiscard]] const TerrainOptions& options() const noexcept { return options_; }
+  /// Of all posts of the finest zoom and the options: tiles are the same where it is.
+  [[nodiscard]] std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
   /// Precondition: the tile is one of tiles(). Errors of the source only.
   [[nodiscard]] Result<TerrainTile> build(const TileId& tile) const;
@@ -214,6 +216,7 @@ class TerrainPyramid {
   const HeightSource* source_ = nullptr;
   TerrainOptions options_;
   std::vector<Zoom> zooms_;
+  std::uint64_t fingerprint_ = 0;
   float polar_height_m_[2] = {};  // south, north; NaN: no data there
 
   friend class TerrainPlanner;

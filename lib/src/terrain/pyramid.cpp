@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "terrain/ticks.h"
 #include "terrain/tile_builder.h"
@@ -51,6 +52,7 @@ class TerrainPlanner {
     add_roots(pyramid.zooms_.front().tiles);
     if (Status status = read_poles(pyramid); !status) return status.error();
     for (std::uint32_t z = 0; z <= max_zoom_; ++z) choose_numbers(z, pyramid.zooms_[z]);
+    pyramid.fingerprint_ = fingerprint(pyramid);
     return pyramid;
   }
 
@@ -85,6 +87,7 @@ class TerrainPlanner {
     }
     const auto count = static_cast<std::size_t>(width * (north - south));
     std::vector<TileInfo> tiles(count);
+    post_hashes_.assign(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
       const std::int64_t x = west + static_cast<std::int64_t>(i) % width,
                          y = south + static_cast<std::int64_t>(i) / width;
@@ -94,7 +97,7 @@ class TerrainPlanner {
     std::vector<Status> statuses(count, Done{});
     std::atomic<std::size_t> done{0};
     parallel_for_each(count, 1, context_, [&](std::size_t i) {
-      statuses[i] = scan(tiles[i]);
+      statuses[i] = scan(tiles[i], post_hashes_[i]);
       ticks_.tick(context_, "plan", static_cast<double>(++done) / static_cast<double>(count));
     });
     if (context_.cancelled()) return Error{ErrorCode::Cancelled, "cancelled", ""};
@@ -109,7 +112,7 @@ class TerrainPlanner {
     return Done{};
   }
 
-  [[nodiscard]] Status scan(TileInfo& tile) const {
+  [[nodiscard]] Status scan(TileInfo& tile, std::uint64_t& hash) const {
     constexpr std::size_t side = size + 1;
     std::vector<float> heights(side * side);
     const PostWindow window{max_zoom_, std::int64_t{tile.x} * size, std::int64_t{tile.y} * size, side, side};
@@ -117,6 +120,7 @@ class TerrainPlanner {
     float low = std::numeric_limits<float>::infinity(), high = -low;
     for (std::size_t i = 0; i < heights.size(); ++i) {
       const float h = heights[i];
+      hash = hash_combine(hash, std::isnan(h) ? none : coordinate_bits(h));
       if (h < low) low = h;
       if (h > high) high = h;
       if (i % side == size || i / side == size) continue;
@@ -212,9 +216,32 @@ class TerrainPlanner {
     numbers.target_edges = targets.empty() ? 0 : targets[std::min<std::size_t>(zoom, targets.size() - 1)];
   }
 
+  [[nodiscard]] std::uint64_t fingerprint(const TerrainPyramid& pyramid) const {
+    constexpr std::uint64_t version = 1;  // of the tiles that this code makes
+    std::uint64_t hash = version;
+    const auto add = [&](double number) { hash = hash_combine(hash, std::bit_cast<std::uint64_t>(number)); };
+    for (const std::uint64_t posts : post_hashes_) hash = hash_combine(hash, posts);
+    for (const TerrainPyramid::Zoom& zoom : pyramid.zooms_) {
+      for (const TileInfo& tile : zoom.tiles) hash = hash_combine(hash, std::uint64_t{tile.x} << 32U | tile.y);
+      add(zoom.tolerance_m);
+      add(zoom.divisions);
+      add(zoom.target_edges);
+    }
+    add(static_cast<double>(options_.method));
+    add(static_cast<double>(options_.borders));
+    for (const double number :
+         {options_.volume_weight, options_.boundary_weight, options_.shape_weight, options_.keep_ratio,
+          options_.max_variation, options_.wlop_radius, static_cast<double>(options_.wlop_rounds)}) {
+      add(number);
+    }
+    add(std::isnan(options_.sea_level_m) ? std::numeric_limits<double>::infinity() : options_.sea_level_m);
+    return hash;
+  }
+
   const HeightSource& source_;
   const TerrainOptions& options_;
   const Context& context_;
+  std::vector<std::uint64_t> post_hashes_;  // per tile of the finest zoom
   terrain::ProgressTicks ticks_;
   std::uint32_t max_zoom_ = 0;
 };

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/terrain_files.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "data.h"
+#include "heights.h"
+
+using namespace lodestone;
+using lodestone::test::FormulaHeights;
+namespace fs = std::filesystem;
+
+namespace {
+
+TerrainTile some_tile(double sea_level_m = NAN) {
+  static const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 1};
+  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {200.0}, .sea_level_m = sea_level_m});
+  REQUIRE(pyramid.ok());
+  auto tile = pyramid->build({1, 2, 1});
+  REQUIRE(tile.ok());
+  return *tile;
+}
+
+// Plain text, so that the test shows what is in it.
+fs::path write_grid(const fs::path& folder, const std::vector<std::vector<double>>& rows, double west, double south,
+                    double step) {
+  const fs::path file = folder / "grid.asc";
+  std::ofstream out{file};
+  out << "ncols " << rows[0].size() << "\nnrows " << rows.size() << "\nxllcenter " << west << "\nyllcenter " << south
+      << "\ncellsize " << step << "\nNODATA_value -9999\n";
+  for (const auto& row : rows) {
+    for (const double value : row) out << value << ' ';
+    out << '\n';
+  }
+  return file;
+}
+
+std::map<std::string, std::string> tree(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator{folder}) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream stream{entry.path(), std::ios::binary};
+    files[fs::relative(entry.path(), folder).string()] = {std::istreambuf_iterator<char>{stream}, {}};
+  }
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("a tile comes back from its bytes as it went in") {
+  const TerrainTile tile = some_tile(0.0);
+  const std::vector<std::vector<TileRange>> below{{{4, 2, 5, 3}}, {{8, 4, 11, 7}}};
+  const auto mesh = decode_quantized_mesh(encode_quantized_mesh(tile, below));
+  REQUIRE(mesh.ok());
+  CHECK(mesh->u == tile.u);
+  CHECK(mesh->v == tile.v);
+  CHECK(mesh->height == tile.height);
+  CHECK(mesh->triangles == tile.triangles);
+  CHECK(mesh->west == tile.west);
+  CHECK(mesh->south == tile.south);
+  CHECK(mesh->east == tile.east);
+  CHECK(mesh->north == tile.north);
+  CHECK(mesh->water == tile.water);
+  CHECK(mesh->available == below);
+  REQUIRE(mesh->normals.size() == tile.normals.size());
+  double least = 1.0, most_m = 0.0;
+  for (std::uint32_t i = 0; i < tile.vertex_count(); ++i) {
+    least = std::min(least, static_cast<double>(glm::dot(mesh->normals[i], tile.normals[i])));
+    most_m = std::max(most_m, std::fabs(mesh->height_m(i) - tile.height_m(i)));
+  }
+  CHECK(least > 0.999);
+  CHECK(most_m < 1e-6);
+  const auto places_m = ecef_positions_m(tile);
+  for (const glm::dvec3& place_m : places_m) {
+    REQUIRE(glm::distance(place_m, mesh->bounds.center) <= mesh->bounds.radius_m * 1.000001);
+  }
+  CHECK(glm::length(mesh->horizon_occlusion_point) > 1.0);
+}
+
+TEST_CASE("every cut of a tile is refused, and changed bytes never give indices out of range") {
+  const TerrainTile tile = some_tile();
+  const auto bytes = encode_quantized_mesh(tile);
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 40) {
+    const bool whole_but_normals = length == bytes.size() - tile.normals.size() * 2 - 5;
+    if (!whole_but_normals) CHECK_FALSE(decode_quantized_mesh({bytes.data(), length}).ok());
+  }
+  auto changed = bytes;
+  for (std::size_t i = 88; i < bytes.size(); i += 1 + bytes.size() / 300) {
+    changed[i] = static_cast<std::uint8_t>(changed[i] ^ 0xa5U);
+    const auto mesh = decode_quantized_mesh(changed);
+    if (mesh.ok())
+      CHECK(std::all_of(mesh->triangles.begin(), mesh->triangles.end(), [&](auto v) { return v < mesh->u.size(); }));
+    changed[i] = bytes[i];
+  }
+}
+
+TEST_CASE("more than 65536 vertices take 32-bit indices") {
+  TerrainTile tile;
+  for (int y = 0; y < 260; ++y) {
+    for (int x = 0; x < 260; ++x) {
+      tile.u.push_back(static_cast<std::uint16_t>(x * 126));
+      tile.v.push_back(static_cast<std::uint16_t>(y * 126));
+      tile.height.push_back(static_cast<std::uint16_t>(x + y));
+    }
+  }
+  for (std::uint32_t i = 0; i + 2 < tile.vertex_count(); i += 3)
+    tile.triangles.insert(tile.triangles.end(), {i, i + 1, i + 2});
+  tile.west = {0, 66000};
+  const auto mesh = decode_quantized_mesh(encode_quantized_mesh(tile));
+  REQUIRE(mesh.ok());
+  CHECK(mesh->triangles == tile.triangles);
+  CHECK(mesh->west == tile.west);
+}
+
+TEST_CASE("available rectangles hold the tiles and no other") {
+  std::vector<TileInfo> tiles;
+  for (std::uint32_t y = 0; y < 6; ++y) {
+    for (std::uint32_t x = 0; x < 9; ++x) {
+      if ((x * 7 + y * 5) % 4 != 0 || y == 3) tiles.push_back({.x = x, .y = y});
+    }
+  }
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
+  for (const TileRange& range : available_ranges(tiles)) {
+    for (std::uint32_t y = range.start_y; y <= range.end_y; ++y) {
+      for (std::uint32_t x = range.start_x; x <= range.end_x; ++x) ++count[{x, y}];
+    }
+  }
+  CHECK(count.size() == tiles.size());
+  for (const TileInfo& tile : tiles) CHECK(count[{tile.x, tile.y}] == 1);
+}
+
+TEST_CASE("posts are linear between samples; voids are skipped, filled or interpolated before scaling") {
+  const fs::path folder = test::scratch_folder("raster");
+  // Samples 45 / 64 degrees apart: the posts of zoom 0.
+  const double step = 0.703125;
+  const fs::path file = write_grid(folder, {{10, 20, 30, 40}, {11, 21, -9999, 41}, {12, 22, 32, 42}}, 0.0, 0.0, step);
+  const auto posts = [&](const RasterOptions& options, std::uint32_t zoom = 0, std::int64_t column = 256,
+                         std::int64_t row = 128) {
+    const auto source = open_raster(file, options);
+    REQUIRE(source.ok());
+    std::vector<float> heights(4);
+    REQUIRE((*source)->read({zoom, column, row, 4, 1}, heights).ok());
+    return heights;
+  };
+  CHECK(posts({}) == std::vector<float>{12, 22, 32, 42});
+  CHECK(posts({.scale = 2.0, .offset_m = 1.0}) == std::vector<float>{25, 45, 65, 85});
+  const auto between = posts({}, 1, 512, 256);
+  CHECK(between == std::vector<float>{12, 17, 22, 27});
+  const auto skipped = posts({}, 0, 256, 129);
+  CHECK(skipped[1] == 21.0F);
+  CHECK(std::isnan(skipped[2]));
+  const auto filled = posts({.voids = Voids::Fill, .fill_m = -3.0, .scale = 10.0}, 0, 257, 129);
+  CHECK(filled == std::vector<float>{210, -3, 410, -3});
+  const auto interpolated = posts({.voids = Voids::Interpolate}, 0, 256, 129);
+  CHECK(interpolated[2] == Approx(31.0).margin(0.5));
+}
+
+TEST_CASE("a raster around the globe is closed behind its last column") {
+  const fs::path folder = test::scratch_folder("around");
+  std::vector<std::vector<double>> rows(3);
+  for (auto& row : rows) {
+    for (int i = 0; i < 8; ++i) row.push_back(i);
+  }
+  const fs::path file = write_grid(folder, rows, 0.0, -45.0, 45.0);
+  const auto source = open_raster(file, {});
+  REQUIRE(source.ok());
+  std::vector<float> heights(3);
+  // 292.5, 315 and 337.5 degrees east.
+  REQUIRE((*source)->read({2, 640 - 32, 512, 3, 1}, heights).ok());
+  const auto at = [&](double longitude_deg) {
+    std::vector<float> one(1);
+    REQUIRE(
+        (*source)->read({2, static_cast<std::int64_t>((longitude_deg + 180.0) / 180.0 * 1024.0), 512, 1, 1}, one).ok());
+    return one[0];
+  };
+  CHECK(at(0.0) == 0.0F);
+  CHECK(at(-45.0) == 7.0F);
+  CHECK(at(-22.5) == 3.5F);  // between the last column and the first
+  CHECK(at(22.5) == 0.5F);
+  CHECK(at(180.0) == 4.0F);
+}
+
+TEST_CASE("what is no raster of heights is refused with a reason") {
+  const fs::path folder = test::scratch_folder("refused");
+  CHECK(open_raster(folder / "nothing.tif", {}).error().code == ErrorCode::NotFound);
+  std::ofstream{folder / "text.tif"} << "this is no raster";
+  CHECK(open_raster(folder / "text.tif", {}).error().code == ErrorCode::BadData);
+  const fs::path far = write_grid(folder, {{1, 2}, {3, 4}}, 500000.0, 4000000.0, 30.0);
+  const auto metres = open_raster(far, {});
+  REQUIRE_FALSE(metres.ok());
+  CHECK(metres.error().message.find("degrees") != std::string::npos);
+}
+
+TEST_CASE("a pyramid on disk is the same for any number of workers, and is resumed to the same bytes") {
+  const FormulaHeights source{test::ranges_m, {10.0, 40.0, 21.0, 51.0}, 4};
+  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {40.0}});
+  REQUIRE(pyramid.ok());
+  const fs::path folder = test::scratch_folder("written");
+  const auto first = write_terrain(*pyramid, folder / "one", {}, {.max_workers = 1});
+  REQUIRE(first.ok());
+  CHECK(first->cracks == 0);
+  CHECK(first->tiles == pyramid->tile_count());
+  const auto expected = tree(folder / "one");
+  CHECK(expected.size() == first->tiles + 2);
+  REQUIRE(write_terrain(*pyramid, folder / "eight", {}, {.max_workers = 8}).ok());
+  CHECK((tree(folder / "eight") == expected));
+
+  // As a killed run leaves it: tiles missing, one half renamed, the journal's last line cut.
+  fs::remove(folder / "eight" / "layer.json");
+  fs::rename(folder / "eight" / "lodestone-terrain.txt", folder / "eight" / "lodestone-terrain.unfinished");
+  fs::resize_file(folder / "eight" / "lodestone-terrain.unfinished",
+                  fs::file_size(folder / "eight" / "lodestone-terrain.unfinished") - 200);
+  fs::remove(folder / "eight" / "0" / "1" / "0.terrain");
+  std::ofstream{folder / "eight" / "0" / "1" / "0.terrain.part17-3"} << "half";
+  CHECK(write_terrain(*pyramid, folder / "eight", {}).error().code == ErrorCode::BadArgument);
+  const auto resumed = write_terrain(*pyramid, folder / "eight", {.resume = true});
+  REQUIRE(resumed.ok());
+  CHECK(resumed->kept_tiles > 0);
+  CHECK(resumed->kept_tiles < resumed->tiles);
+  CHECK((tree(folder / "eight") == expected));
+
+  const auto other = TerrainPyramid::plan(source, {.max_error_m = {41.0}});
+  CHECK(write_terrain(*other, folder / "eight", {.resume = true}).error().code == ErrorCode::BadArgument);
+  std::ofstream{folder / "mine.txt"} << "not terrain";
+  CHECK(write_terrain(*pyramid, folder, {}).error().code == ErrorCode::BadArgument);
+}
+
+TEST_CASE("real heights stay within the tolerance, without cracks, voids left out") {
+  LODESTONE_REQUIRE_DATA(root);
+  const auto source = open_raster(root / "terrain" / "srtm3_N30E079_1201.tif", {});
+  REQUIRE(source.ok());
+  CHECK((*source)->native_zoom() == 10);
+  const auto pyramid = TerrainPyramid::plan(**source, {.max_error_m = {20.0}});
+  REQUIRE(pyramid.ok());
+  const auto written = write_terrain(*pyramid, test::scratch_folder("srtm"), {});
+  REQUIRE(written.ok());
+  CHECK(written->cracks == 0);
+  for (const TerrainZoomSummary& zoom : written->zooms) {
+    CHECK(zoom.max_error_m <= zoom.tolerance_m + 0.5 * pyramid->height_step_m(zoom.zoom));
+  }
+}
