@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Installs the Debian and Ubuntu packages that Lodestone is built with; does nothing if they are all there.
 #
-#   scripts/deps.sh                    what building and testing needs: groups build, viewer, test
+#   scripts/deps.sh                    what building and testing needs: groups build, viewer, test, clients
 #   scripts/deps.sh --check            prints what is missing and ends with 1 if anything is
 #   scripts/deps.sh --list             prints the packages of the groups asked for
 #   scripts/deps.sh [...] GROUP...     only these groups: build viewer test bench clients
@@ -19,7 +19,7 @@ packages_of() {
     viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;
     test) echo catch2 librapidcheck-dev python3 npm xvfb xdotool imagemagick assimp-testmodels ;;
     bench) echo libmeshoptimizer-dev libcgal-dev libdraco-dev libtinyobjloader-dev npm ;;
-    clients) echo npm ;;
+    clients) echo npm chromium ;;
     *) echo "lodestone: deps.sh: no such group: $1 (build viewer test bench clients)" >&2; return 1 ;;
   esac
 }
@@ -34,7 +34,7 @@ for word in "$@"; do
     *) groups+=("$word") ;;
   esac
 done
-[ ${#groups[@]} -gt 0 ] || groups=(build viewer test)
+[ ${#groups[@]} -gt 0 ] || groups=(build viewer test clients)
 
 wanted=()
 for group in "${groups[@]}"; do
