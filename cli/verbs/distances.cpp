@@ -131,7 +131,7 @@ void put_sides(Report& report, const SwitchStudy& study) {
     Report fit;
     put(fit, side.fit);
     object.set("fit", fit);
-    put(object, side.plan, study.first_m);
+    put(object, side.design, study.first_m);
     report.add("sides", object);
   }
 }
@@ -144,6 +144,9 @@ void put(Report& report, const SwitchStudy& study) {
   report.set("fit", fit);
   put(report, study.plan, study.first_m);
   put(report, study.plan_check);
+  Report design;
+  put(design, study.design, study.first_m);
+  report.set("design", design);
   Report measured;
   put(measured, study.measured, study.first_m);
   put(measured, study.measured_check);
@@ -195,8 +198,9 @@ std::string check_row(const std::string& name, const render::PlanCheck& check) {
 // Tables 3 to 5 of the paper in one, then what an eye would notice at each switch.
 std::string table(const SwitchStudy& study) {
   std::string lines = "\n" + row("plan", {"redundancy", "cost", "distance in m : triangles"});
-  lines += plan_row(study.plan, study.first_m);
+  lines += plan_row(study.design, study.first_m);
   for (const SwitchPlan& plan : study.alternatives) lines += plan_row(plan, study.first_m);
+  if (study.plan.switch_m != study.design.switch_m) lines += plan_row(study.plan, study.first_m);
   lines += plan_row(study.measured, study.first_m);
   lines += "\n" + row("noticeably different pixels", {});
   lines += check_row(study.plan.name, study.plan_check);
@@ -207,7 +211,7 @@ std::string table(const SwitchStudy& study) {
   if (study.sides.size() > 1) {
     lines += "\n" + row("side", {"redundancy", "cost", "distance in m : triangles"});
     for (const render::SideStudy& side : study.sides) {
-      SwitchPlan named = side.plan;
+      SwitchPlan named = side.design;
       named.name = side.side.name;
       lines += plan_row(named, study.first_m);
     }

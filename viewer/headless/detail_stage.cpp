@@ -28,6 +28,17 @@ Surroundings plain(const Surroundings& source) {
   return made;
 }
 
+constexpr std::uint32_t smooth_supersample = 2;
+constexpr std::uint32_t smooth_coverage = 4;
+
+// Part of `screen_px` pixels, about their middle, that holds `reach_px` on both sides. A multiple of `step_px` goes at
+// each end, so that every wavelet coefficient keeps its place.
+std::uint32_t cut_px(std::uint32_t screen_px, double reach_px, std::uint32_t step_px) {
+  const double spare_px = 0.5 * screen_px - reach_px;
+  if (!(spare_px >= step_px)) return screen_px;
+  return screen_px - 2 * step_px * static_cast<std::uint32_t>(spare_px / step_px);
+}
+
 // Normals are left out, so that faces are lit flat, and colours.
 DrawArrays plain(const Cursor& cursor) {
   DrawArrays arrays = arrays_of(cursor);
@@ -40,9 +51,12 @@ DrawArrays plain(const Cursor& cursor) {
 }  // namespace
 
 struct DetailStage::State {
-  State(std::shared_ptr<const ProgressiveModel> m, const Display& d, std::unique_ptr<Stage> s, Frame f)
+  State(std::shared_ptr<const ProgressiveModel> m, const Display& d, std::uint32_t samples, std::unique_ptr<Stage> s,
+        Frame f)
       : model(std::move(m)),
         display(d),
+        supersample(samples),
+        wavelet_levels(VisionModel{d}.levels()),
         stage(std::move(s)),
         frame(std::move(f)),
         surfaces(stage->gl(), plain(model->data())),
@@ -52,13 +66,49 @@ struct DetailStage::State {
   }
 
   std::shared_ptr<const ProgressiveModel> model;
+  // The part of the screen that shows the object from a distance, and its camera.
+  [[nodiscard]] View view(double azimuth_rad, double distance_m) const;
+  [[nodiscard]] Status resize(const FrameSize& size);
+
   Display display;
+  std::uint32_t supersample;
+  int wavelet_levels;
   std::unique_ptr<Stage> stage;
   Frame frame;
   Surfaces surfaces;
   Cursor cursor;
   Geometry geometry;
 };
+
+View DetailStage::State::view(double azimuth_rad, double distance_m) const {
+  constexpr double band_reach = 16.0;  // samples of the coarsest band: 8 of the filter, 4 of the wavelet, some to spare
+  const std::uint32_t step_px = 1U << std::max(6, wavelet_levels);
+  const Box& box = model->bounds();
+  const glm::dvec3 middle = box.center();
+  const glm::dvec3 outward{std::sin(azimuth_rad), std::cos(azimuth_rad), 0.0};
+  const glm::dvec3 right{-outward.y, outward.x, 0.0};
+  glm::dvec2 reach{0.0};  // pixels per pixel of focal length
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p{(corner & 1U) != 0 ? box.max.x : box.min.x, (corner & 2U) != 0 ? box.max.y : box.min.y,
+                       (corner & 4U) != 0 ? box.max.z : box.min.z};
+    const double depth_m = std::max(0.0, distance_m - glm::dot(p - middle, outward));
+    reach = glm::max(reach, glm::abs(glm::dvec2{glm::dot(p - middle, right), p.z - middle.z}) / depth_m);
+  }
+  const double focal_px = focal_length_px(display);
+  const double margin_px = std::ldexp(band_reach, wavelet_levels);
+  const std::uint32_t width_px = cut_px(display.width_px, focal_px * reach.x + margin_px, step_px);
+  const std::uint32_t height_px = cut_px(display.height_px, focal_px * reach.y + margin_px, step_px);
+  return look_at(middle + outward * distance_m, middle, width_px, height_px,
+                 2.0 * std::atan(0.5 * height_px / focal_px));
+}
+
+Status DetailStage::State::resize(const FrameSize& size) {
+  if (frame.size() == size) return Done{};
+  auto resized = Frame::create(stage->gl(), size);
+  if (!resized) return resized.error();
+  frame = std::move(resized).value();
+  return Done{};
+}
 
 DetailStage::DetailStage(std::unique_ptr<State> state) : state_(std::move(state)) {}
 DetailStage::~DetailStage() = default;
@@ -76,11 +126,12 @@ Result<std::unique_ptr<DetailStage>> DetailStage::create(std::shared_ptr<const P
   }
   auto stage = Stage::create();
   if (!stage) return stage.error();
-  const FrameSize size{display.width_px, display.height_px, supersample, 1};
+  // The largest that will be needed.
+  const FrameSize size{display.width_px, display.height_px, std::max(smooth_supersample, supersample), smooth_coverage};
   auto frame = Frame::create((*stage)->gl(), size);
   if (!frame) return frame.error();
-  return std::unique_ptr<DetailStage>{new DetailStage{
-      std::make_unique<State>(std::move(model), display, std::move(stage).value(), std::move(frame).value())}};
+  return std::unique_ptr<DetailStage>{new DetailStage{std::make_unique<State>(
+      std::move(model), display, supersample, std::move(stage).value(), std::move(frame).value())}};
 }
 
 void DetailStage::set_level(Level level) {
@@ -90,15 +141,17 @@ void DetailStage::set_level(Level level) {
   s.cursor.clear_dirty();
 }
 
-Result<ObjectPicture> DetailStage::picture(double azimuth_rad, double distance_m) {
+Result<ObjectPicture> DetailStage::picture(double azimuth_rad, double distance_m, Edges edges) {
   if (!std::isfinite(azimuth_rad) || !(distance_m > 0.0) || !std::isfinite(distance_m)) {
     return Error{ErrorCode::BadArgument, "a distance must be finite and above 0, a direction finite", ""};
   }
   State& s = *state_;
-  const glm::dvec3 middle = s.model->bounds().center();
-  const glm::dvec3 outward{std::sin(azimuth_rad), std::cos(azimuth_rad), 0.0};
-  const View view =
-      look_at(middle + outward * distance_m, middle, s.display.width_px, s.display.height_px, s.display.fov_y_rad);
+  const View view = s.view(azimuth_rad, distance_m);
+  const FrameSize size =
+      edges == Edges::Smooth
+          ? FrameSize{view.width_px, view.height_px, std::max(smooth_supersample, s.supersample), smooth_coverage}
+          : FrameSize{view.width_px, view.height_px, s.supersample, 1};
+  if (Status status = s.resize(size); !status) return status.error();
   const Item item{.geometry = &s.geometry, .surfaces = &s.surfaces, .size_m = s.model->bounds().diagonal_m()};
   const Look look{.coloring = Coloring::Untextured, .background = Background::White};
   s.stage->renderer().draw(s.frame, view, s.model->bounds(), {&item, 1}, look);

@@ -9,6 +9,12 @@
 
 namespace lodestone::render {
 
+enum class Edges : std::uint8_t {
+  Sampled,  ///< as many samples per pixel as the stage was made with: what a plain program draws
+  Smooth,   ///< sixteen at least, averaged in linear light: what remains when a picture is compared with another of
+            ///< the same thing, and the luck of where a sample falls should not count
+};
+
 class DetailStage {
  public:
   /// `supersample` 1 takes one sample per pixel, without any antialiasing; 2 to 4 as many per axis.
@@ -25,7 +31,9 @@ class DetailStage {
 
   /// From `distance_m` before the middle of the model, at the height of its middle. `azimuth_rad` is the direction that
   /// the side faces: 0 = north (+y), clockwise seen from above; the camera stands there and looks back.
-  [[nodiscard]] Result<ObjectPicture> picture(double azimuth_rad, double distance_m);
+  /// Only the middle of the screen is drawn: the object with as much white around it as a vision model of the display
+  /// reaches, so that what it makes of the object is the same as on the whole screen.
+  [[nodiscard]] Result<ObjectPicture> picture(double azimuth_rad, double distance_m, Edges edges = Edges::Sampled);
 
  private:
   struct State;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -69,9 +70,12 @@ class Studying {
   [[nodiscard]] Status sample_sides(const std::vector<LookedAt>& sides);
   [[nodiscard]] Status fit_and_design();
   [[nodiscard]] Status compare();
+  [[nodiscard]] Status look_at_full_detail(double distance_m);
   [[nodiscard]] Result<LevelCheck> check_level(Level level, double distance_m);
   [[nodiscard]] Result<PlanCheck> check_levels(const SwitchPlan& plan);
   [[nodiscard]] Status refine_levels();
+  [[nodiscard]] Status move_idle();
+  [[nodiscard]] Result<std::pair<Level, LevelCheck>> best_beyond(Level last, double last_m);
   [[nodiscard]] Result<std::pair<Level, LevelCheck>> coarsest_unnoticed(Level from, double distance_m);
   [[nodiscard]] Status look_once();
   [[nodiscard]] Result<SwitchPlan> design(const DetailFit& fit) const;
@@ -88,6 +92,9 @@ class Studying {
   SwitchStudy study_;
   std::uint32_t levels_ = 0;
   std::vector<Warning> warnings_;
+  std::vector<ObjectPicture> full_;  ///< the sides in full detail from full_distance_m_
+  double full_distance_m_ = 0.0;
+  std::map<std::pair<double, Level>, LevelCheck> checked_;
 };
 
 Status Studying::sample_sides(const std::vector<LookedAt>& sides) {
@@ -116,7 +123,8 @@ Status Studying::sample_sides(const std::vector<LookedAt>& sides) {
 
 Result<SwitchPlan> Studying::design(const DetailFit& fit) const {
   auto plan = design_switches(fit, levels_, beyond_m());
-  if (plan) add_cost(*plan);
+  if (!plan) return plan;
+  add_cost(*plan);
   return plan;
 }
 
@@ -128,14 +136,16 @@ Status Studying::fit_and_design() {
   levels_ = options_.levels > 0 ? options_.levels : choose_level_count(study_.fit, beyond_m());
   auto plan = design(study_.fit);
   if (!plan) return plan.error();
-  study_.plan = std::move(*plan);
+  study_.design = std::move(*plan);
+  study_.plan = study_.design;
+  move_idle_switches(study_.plan, study_.fit, *model_, study_.first_m, beyond_m(), study_.focal_px);
   for (SideStudy& side : study_.sides) {
     auto own = fit_detail(side.samples);
     if (!own) return own.error();
     side.fit = *own;
     auto own_plan = design(side.fit);
     if (!own_plan) return own_plan.error();
-    side.plan = std::move(*own_plan);
+    side.design = std::move(*own_plan);
   }
   return Done{};
 }
@@ -163,20 +173,33 @@ Status Studying::compare() {
   return Done{};
 }
 
+Status Studying::look_at_full_detail(double distance_m) {
+  if (full_distance_m_ == distance_m) return Done{};
+  full_.clear();
+  stage_.set_level(model_->record_count());
+  for (const SideStudy& side : study_.sides) {
+    auto picture = stage_.picture(side.side.azimuth_rad, distance_m, Edges::Smooth);
+    if (!picture) return picture.error();
+    full_.push_back(std::move(*picture));
+  }
+  full_distance_m_ = distance_m;
+  return Done{};
+}
+
 Result<LevelCheck> Studying::check_level(Level level, double distance_m) {
+  const auto known = checked_.find({distance_m, level});
+  if (known != checked_.end()) return known->second;
+  if (Status status = look_at_full_detail(distance_m); !status) return status.error();
   LevelCheck check{distance_m, 0.0, 0.0};
   double pixels = 0.0;
-  for (const SideStudy& side : study_.sides) {
+  stage_.set_level(level);
+  for (std::size_t i = 0; i < full_.size(); ++i) {
     if (context_.cancelled()) return Error{ErrorCode::Cancelled, "cancelled", ""};
-    stage_.set_level(model_->record_count());
-    const auto full = stage_.picture(side.side.azimuth_rad, distance_m);
-    if (!full) return full.error();
-    stage_.set_level(level);
-    const auto coarse = stage_.picture(side.side.azimuth_rad, distance_m);
+    const auto coarse = stage_.picture(study_.sides[i].side.azimuth_rad, distance_m, Edges::Smooth);
     if (!coarse) return coarse.error();
-    const auto seen = check_vision(full->image, coarse->image, full->mask, vision_);
+    const auto seen = check_vision(full_[i].image, coarse->image, full_[i].mask, vision_);
     if (!seen) return seen.error();
-    const auto count = static_cast<double>(std::count(full->mask.begin(), full->mask.end(), std::uint8_t{1}));
+    const auto count = static_cast<double>(std::count(full_[i].mask.begin(), full_[i].mask.end(), std::uint8_t{1}));
     check.ssim += seen->ssim * count;
     check.noticeable_ratio += seen->noticeable_ratio * count;
     pixels += count;
@@ -184,6 +207,7 @@ Result<LevelCheck> Studying::check_level(Level level, double distance_m) {
   stage_.set_level(model_->record_count());
   check.ssim /= pixels;
   check.noticeable_ratio /= pixels;
+  checked_.emplace(std::pair{distance_m, level}, check);
   return check;
 }
 
@@ -203,8 +227,6 @@ Status Studying::refine_levels() {
   study_.measured_check = study_.plan_check;
   SwitchPlan& plan = study_.measured;
   plan.name += ", measured";
-  double end_m = beyond_m();
-  plan.cost = study_.first_m * model_->triangle_count();
   for (std::size_t i = plan.levels.size(); i-- > 0;) {
     LevelCheck& check = study_.measured_check.levels[i];
     const Level farther = i + 1 < plan.levels.size() ? plan.levels[i + 1] : 0;
@@ -215,20 +237,73 @@ Status Studying::refine_levels() {
       check = found->second;
     }
     plan.triangles[i] = model_->info(plan.levels[i]).triangles;
+  }
+  if (Status status = move_idle(); !status) return status;
+  double end_m = beyond_m();
+  plan.cost = study_.first_m * model_->triangle_count();
+  for (std::size_t i = plan.levels.size(); i-- > 0; end_m = plan.switch_m[i]) {
     plan.cost += (end_m - plan.switch_m[i]) * plan.triangles[i];
-    end_m = plan.switch_m[i];
+  }
+  plan.redundancy = redundancy(study_.fit, plan.switch_m, beyond_m());
+  return Done{};
+}
+
+// Refined levels may be nearly the same: a switch that saves less than a twentieth of the triangles goes beyond the
+// last one instead, to where it saves most.
+Status Studying::move_idle() {
+  constexpr double least_saving = 0.05;
+  SwitchPlan& plan = study_.measured;
+  for (std::size_t turn = plan.levels.size(); turn > 0; --turn) {
+    std::size_t idle = 1;
+    while (idle < plan.levels.size() && plan.triangles[idle] < (1.0 - least_saving) * plan.triangles[idle - 1]) ++idle;
+    if (idle >= plan.levels.size()) break;
+    auto found = best_beyond(plan.levels.back(), study_.first_m + plan.switch_m.back());
+    if (!found) return found.error();
+    if (model_->info(found->first).triangles >= (1.0 - least_saving) * plan.triangles.back()) break;
+    // The finer of the two levels serves both ranges.
+    const auto at = static_cast<std::ptrdiff_t>(idle);
+    plan.switch_m.erase(plan.switch_m.begin() + at);
+    plan.levels.erase(plan.levels.begin() + at);
+    plan.triangles.erase(plan.triangles.begin() + at);
+    study_.measured_check.levels.erase(study_.measured_check.levels.begin() + at);
+    plan.switch_m.push_back(found->second.distance_m - study_.first_m);
+    plan.levels.push_back(found->first);
+    plan.triangles.push_back(model_->info(found->first).triangles);
+    study_.measured_check.levels.push_back(found->second);
   }
   return Done{};
 }
 
-// Halves the stack above a level that shows: the upper end always passes, the finest level being full detail.
+// The level and distance beyond `last_m` at which switching saves most. The level `last` serves until then.
+Result<std::pair<Level, LevelCheck>> Studying::best_beyond(Level last, double last_m) {
+  constexpr int steps = 8;
+  std::pair<Level, LevelCheck> best{last, {last_m, 1.0, 0.0}};
+  double most = 0.0;
+  for (int k = 1; k < steps; ++k) {
+    const double distance_m = last_m * std::pow(study_.last_m / last_m, double(k) / steps);
+    const Level unmoved =
+        model_->level_of_error(imperceptible_error_m(distance_m, study_.focal_px) * 2.0 * study_.plan.allowed_px);
+    auto found = coarsest_unnoticed(std::min(last, unmoved), distance_m);
+    if (!found) return found.error();
+    const double fewer = double(model_->info(last).triangles) - model_->info(found->first).triangles;
+    if (fewer * (study_.last_m - distance_m) > most) {
+      most = fewer * (study_.last_m - distance_m);
+      best = *found;
+    }
+  }
+  return best;
+}
+
+// Halves the stack above a level that shows, to a thousandth of it: the upper end always passes, the finest level being
+// full detail.
 Result<std::pair<Level, LevelCheck>> Studying::coarsest_unnoticed(Level from, double distance_m) {
   auto check = check_level(from, distance_m);
   if (!check) return check.error();
   if (check->noticeable_ratio <= options_.noticeable_limit) return std::pair{from, *check};
   Level shows = from;
   std::pair<Level, LevelCheck> passes{model_->record_count(), {distance_m, 1.0, 0.0}};
-  while (passes.first - shows > 1) {
+  const Level near_enough = std::max(Level{1}, model_->record_count() / 1000);
+  while (passes.first - shows > near_enough) {
     const Level middle = shows + (passes.first - shows) / 2;
     check = check_level(middle, distance_m);
     if (!check) return check.error();

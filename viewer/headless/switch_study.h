@@ -35,7 +35,7 @@ struct SideStudy {
   LookedAt side;
   std::vector<DetailSample> samples;
   DetailFit fit;
-  SwitchPlan plan;
+  SwitchPlan design;
 };
 
 /// One level at its switch distance against full detail there, over all sides.
@@ -57,14 +57,15 @@ struct SwitchStudy {
   double last_m = 0.0;
   double focal_px = 0.0;
   std::vector<SideStudy> sides;
-  std::vector<DetailSample> samples;  ///< pooled
-  DetailFit fit;                      ///< of the pooled samples, as `plan`
-  SwitchPlan plan;
+  std::vector<DetailSample> samples;     ///< pooled
+  DetailFit fit;                         ///< of the pooled samples, as `design`
+  SwitchPlan design;                     ///< least redundancy
+  SwitchPlan plan;                       ///< the same, idle switches moved
   std::vector<SwitchPlan> alternatives;  ///< equal intervals of 1.46, 2.92, 4.38 d1, exponential 2 and 3
   PlanCheck plan_check;
   /// The plan with its levels refined one by one until no more than `noticeable_limit` of the pixels differ noticeably:
   /// equation 17 bounds how far a surface moves, not what becomes visible when a wall swallows a pane of another
-  /// colour.
+  /// colour. Switches that save less than a twentieth of the triangles after that go beyond the last.
   SwitchPlan measured;
   PlanCheck measured_check;
   /// The equal intervals with all their levels as fine as the cost of `measured` allows.

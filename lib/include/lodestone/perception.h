@@ -77,6 +77,9 @@ class VisionModel {
   /// Wavelet levels used: the fewest whose next band would lie below the peak.
   [[nodiscard]] int levels() const noexcept { return levels_; }
 
+  /// Of the display, equation 13.
+  [[nodiscard]] double max_frequency_cpd() const noexcept { return max_frequency_cpd_; }
+
   /// Gain of the filter of band `level` (1 = finest) at a frequency inside that band; equals equation 14 over its peak.
   [[nodiscard]] double gain(int level, double frequency_cpd) const noexcept;
 
@@ -206,8 +209,13 @@ struct SwitchPlan {
 /// `plan.allowed_px` at its distance. `last_m` is beyond d1.
 void add_cost(SwitchPlan& plan, const ProgressiveModel& model, double first_m, double last_m, double focal_px);
 
-/// Sets `plan.allowed_px`, between 0.001 and 64, to the least with which the plan costs at most `cost`, and fills it
-/// in: how fine its levels can be for the cost of another plan.
+/// A switch at which `model` has no coarser level than before saves nothing: each such goes to where it saves most of
+/// the cost instead. Costs and redundancy follow. Call after `add_cost`, with the same distances.
+void move_idle_switches(SwitchPlan& plan, const DetailFit& fit, const ProgressiveModel& model, double first_m,
+                        double last_m, double focal_px);
+
+/// Makes the levels of a plan as fine as `cost` allows: `plan.allowed_px`, between 0.001 and 64, becomes the least with
+/// which it costs no more; what is left then refines the levels one by one, the farthest first.
 void match_cost(SwitchPlan& plan, double cost, const ProgressiveModel& model, double first_m, double last_m,
                 double focal_px);
 
@@ -218,9 +226,11 @@ struct VisionCheck {
   Image difference;               ///< dark grey = equal, white = noticeable, black = not the object; one channel
 };
 
-/// Both pictures are first seen through `vision`; a pixel differs noticeably where their difference exceeds the
-/// threshold of contrast at its surroundings (Weber fraction 2 % of the local luminance, at least 2 of 255; Daly 1993
-/// in its simplest form). Errors: BadArgument if sizes disagree or the mask is empty.
+/// The similarity is that of the pictures as `vision` has them. The share counts pixels where the pictures themselves
+/// differ noticeably, after Daly 1993: in bands of an octave, the threshold is 2 % of the luminance around (at
+/// least 1.5 of 255 values) over the sensitivity of the band, raised by the contrast that both pictures have there
+/// already (exponent 0.7); bands are pooled by their fourth powers; a pixel whose own values are the same does not
+/// count. Errors: BadArgument if sizes disagree or the mask is empty.
 [[nodiscard]] Result<VisionCheck> check_vision(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask,
                                                const VisionModel& vision);
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Based on: Wang, Bovik, Sheikh and Simoncelli 2004 (structural similarity); Zhu et al. 2010, section 5.2.
-// Differs: the visible difference predictor of Daly 1993 is reduced to its two strongest parts: contrast sensitivity
-// (both pictures are seen through the vision model) and luminance adaptation (Weber's law against the surroundings).
 #include <lodestone/perception.h>
 
 #include <algorithm>
@@ -9,12 +7,10 @@
 #include <cstdlib>
 
 #include "perception/luminance.h"
+#include "perception/visible_difference.h"
 
 namespace lodestone {
 namespace {
-
-constexpr double weber_fraction = 0.02;
-constexpr double least_threshold = 2.0;
 
 // Sums over rectangles in constant time.
 class Sums {
@@ -50,8 +46,8 @@ double similarity(double n, double a, double b, double aa, double bb, double ab)
   return (2.0 * ma * mb + c1) * (2.0 * covariance + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
 }
 
-// Two grey pictures of one size, pixel by pixel where the mask is set.
-VisionCheck compare(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask) {
+// Mean structural similarity of two grey pictures of one size where the mask is set.
+double mean_similarity(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask) {
   const std::size_t width = a.width;
   const std::size_t height = a.height;
   const auto& pa = a.pixels;
@@ -61,34 +57,38 @@ VisionCheck compare(const Image& a, const Image& b, const std::vector<std::uint8
   const Sums saa{width, height, [&](std::size_t i) { return static_cast<double>(pa[i]) * pa[i]; }};
   const Sums sbb{width, height, [&](std::size_t i) { return static_cast<double>(pb[i]) * pb[i]; }};
   const Sums sab{width, height, [&](std::size_t i) { return static_cast<double>(pa[i]) * pb[i]; }};
-
-  VisionCheck check;
-  check.difference = Image{a.width, a.height, 1, std::vector<std::uint8_t>(width * height, 0)};
   double ssim = 0.0;
   std::uint64_t pixels = 0;
-  std::uint64_t noticeable = 0;
   constexpr std::size_t reach = 4;  // windows of 9 x 9
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = 0; x < width; ++x) {
-      const std::size_t i = y * width + x;
-      if (mask[i] == 0) continue;
+      if (mask[y * width + x] == 0) continue;
       const std::size_t x0 = x - std::min(x, reach);
       const std::size_t y0 = y - std::min(y, reach);
       const std::size_t x1 = std::min(width, x + reach + 1);
       const std::size_t y1 = std::min(height, y + reach + 1);
       const auto n = static_cast<double>((x1 - x0) * (y1 - y0));
-      const double around = sa.over(x0, y0, x1, y1);
-      ssim += similarity(n, around, sb.over(x0, y0, x1, y1), saa.over(x0, y0, x1, y1), sbb.over(x0, y0, x1, y1),
-                         sab.over(x0, y0, x1, y1));
-      const double threshold = std::max(least_threshold, weber_fraction * around / n);
-      const double difference = std::abs(static_cast<double>(pa[i]) - pb[i]);
-      check.difference.pixels[i] =
-          static_cast<std::uint8_t>(std::min(255.0, 64.0 + 191.0 * std::min(1.0, difference / threshold)));
+      ssim += similarity(n, sa.over(x0, y0, x1, y1), sb.over(x0, y0, x1, y1), saa.over(x0, y0, x1, y1),
+                         sbb.over(x0, y0, x1, y1), sab.over(x0, y0, x1, y1));
       ++pixels;
-      if (difference > threshold) ++noticeable;
     }
   }
-  check.ssim = ssim / static_cast<double>(pixels);
+  return ssim / static_cast<double>(pixels);
+}
+
+// Where two pictures differ noticeably.
+VisionCheck compare(const Image& a, const Image& b, const std::vector<std::uint8_t>& mask, const VisionModel& vision) {
+  VisionCheck check;
+  check.difference = Image{a.width, a.height, 1, std::vector<std::uint8_t>(mask.size(), 0)};
+  const std::vector<float> noticed = perception::visible_difference(a, b, vision);
+  std::uint64_t pixels = 0;
+  std::uint64_t noticeable = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == 0) continue;
+    check.difference.pixels[i] = static_cast<std::uint8_t>(64.0F + 191.0F * std::min(1.0F, noticed[i]));
+    ++pixels;
+    if (noticed[i] > 1.0F) ++noticeable;
+  }
   check.noticeable_ratio = static_cast<double>(noticeable) / static_cast<double>(pixels);
   return check;
 }
@@ -112,18 +112,19 @@ Result<VisionCheck> check_vision(const Image& a, const Image& b, const std::vect
   if (!seen_a) return seen_a.error();
   const auto seen_b = vision.simulate(b);
   if (!seen_b) return seen_b.error();
-  return compare(*seen_a, *seen_b, mask);
+  VisionCheck check = compare(a, b, mask, vision);
+  check.ssim = mean_similarity(*seen_a, *seen_b, mask);
+  return check;
 }
 
 Result<VisionCheck> check_simulation(const ObjectPicture& picture, const VisionModel& vision) {
   if (!fits(picture.image, picture.mask)) return misfit();
   const auto seen = vision.simulate(picture.image);
   if (!seen) return seen.error();
-  auto check = check_vision(picture.image, *seen, picture.mask, vision);
-  if (!check) return check.error();
+  VisionCheck check = compare(picture.image, *seen, picture.mask, vision);
   Image rendered{seen->width, seen->height, 1, std::vector<std::uint8_t>(picture.mask.size())};
   for (std::size_t i = 0; i < rendered.pixels.size(); ++i) rendered.pixels[i] = perception::grey(picture.image, i);
-  check->ssim = compare(rendered, *seen, picture.mask).ssim;
+  check.ssim = mean_similarity(rendered, *seen, picture.mask);
   return check;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Based on: Zhu et al. 2010, sections 4 and 5.3 (equations 10 to 12 and 16 to 18).
+// Based on: Zhu et al. 2010, sections 4 and 5.3 (equations 10 to 12 and 16).
 #include <lodestone/perception.h>
 
 #include <algorithm>
@@ -128,35 +128,6 @@ SwitchPlan exponential_intervals(const DetailFit& fit, std::uint32_t levels, dou
     switch_m.push_back(std::min(first_m * (std::pow(factor, i) - 1.0), last_m));
   }
   return make_plan("exponential " + std::to_string(std::lround(factor)), fit, std::move(switch_m), last_m);
-}
-
-void add_cost(SwitchPlan& plan, const ProgressiveModel& model, double first_m, double last_m, double focal_px) {
-  plan.levels.clear();
-  plan.triangles.clear();
-  plan.cost = first_m * model.triangle_count();  // level 0: the whole model, up to d1
-  for (std::size_t i = 0; i < plan.switch_m.size(); ++i) {
-    const double end = i + 1 < plan.switch_m.size() ? plan.switch_m[i + 1] : last_m;
-    const double half_px_m = imperceptible_error_m(first_m + plan.switch_m[i], focal_px);
-    plan.levels.push_back(model.level_of_error(2.0 * plan.allowed_px * half_px_m));
-    plan.triangles.push_back(model.info(plan.levels.back()).triangles);
-    plan.cost += (end - plan.switch_m[i]) * plan.triangles.back();
-  }
-}
-
-void match_cost(SwitchPlan& plan, double cost, const ProgressiveModel& model, double first_m, double last_m,
-                double focal_px) {
-  constexpr double finest_px = 1e-3;
-  constexpr double coarsest_px = 64.0;
-  double low = std::log(finest_px);
-  double high = std::log(coarsest_px);
-  for (int halving = 0; halving < 40; ++halving) {
-    const double middle = 0.5 * (low + high);
-    plan.allowed_px = std::exp(middle);
-    add_cost(plan, model, first_m, last_m, focal_px);
-    (plan.cost > cost ? low : high) = middle;
-  }
-  plan.allowed_px = std::exp(high);
-  add_cost(plan, model, first_m, last_m, focal_px);
 }
 
 }  // namespace lodestone

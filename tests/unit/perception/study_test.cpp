@@ -30,7 +30,7 @@ std::shared_ptr<const ProgressiveModel> model_of(const Mesh& mesh) {
 
 std::shared_ptr<const ProgressiveModel> house() {
   static const auto model = [] {
-    const auto mesh = generate_house({{.triangles = 12'000, .pixels = Pixels::Skip}});
+    const auto mesh = generate_house({{.triangles = 6'000, .pixels = Pixels::Skip}});
     REQUIRE(mesh.ok());
     return model_of(*mesh);
   }();
@@ -39,9 +39,9 @@ std::shared_ptr<const ProgressiveModel> house() {
 
 render::StudyOptions small() {
   render::StudyOptions options;
-  options.display.width_px = 480;
-  options.display.height_px = 384;
-  options.samples = 48;
+  options.display.width_px = 320;
+  options.display.height_px = 256;
+  options.samples = 32;
   options.levels = 4;
   return options;
 }
@@ -68,6 +68,21 @@ bool same(const render::SwitchStudy& a, const render::SwitchStudy& b) {
          a.vision.ssim == b.vision.ssim;
 }
 
+// The design, on a model, costs less than equal intervals of 1.46 and 2.92 d1 (the paper's 100 and 200 m) and than
+// exponential 2.
+void check_cost(SwitchPlan plan, const DetailFit& fit, const ProgressiveModel& model, double first_m, double beyond_m) {
+  const double focal_px = focal_length_px(Display{});
+  add_cost(plan, model, first_m, beyond_m, focal_px);
+  move_idle_switches(plan, fit, model, first_m, beyond_m, focal_px);
+  for (SwitchPlan other :
+       {equal_intervals(fit, 4, 1.46 * first_m, beyond_m), equal_intervals(fit, 4, 2.92 * first_m, beyond_m),
+        exponential_intervals(fit, 4, 2.0, first_m, beyond_m)}) {
+    add_cost(other, model, first_m, beyond_m, focal_px);
+    INFO(plan.cost << " against " << other.name << " " << other.cost);
+    CHECK(plan.cost < other.cost);
+  }
+}
+
 // What must hold on a real building, seen from its front, with four levels as in the paper.
 void check_building(const std::string& id) {
   LODESTONE_REQUIRE_DATA(root);
@@ -76,25 +91,28 @@ void check_building(const std::string& id) {
   const auto built = build_by_facet_shift(loaded->mesh);
   REQUIRE(built.ok());
   render::StudyOptions options;
-  options.samples = 64;
+  options.samples = 48;
   options.levels = 4;
   const auto study = render::study_switch_distances(built->model, options);
   REQUIRE(study.ok());
-  INFO(id << ": R^2 " << study->fit.r_square << ", SSIM " << study->vision.ssim << ", cost " << study->plan.cost);
+  INFO(id << ": R^2 " << study->fit.r_square << ", SSIM " << study->vision.ssim);
   CHECK(falls(study->samples));
   CHECK(study->fit.r_square >= 0.99);
   CHECK(study->vision.ssim >= 0.99);
-  for (const std::size_t other : {0U, 1U, 3U}) {  // equal intervals of 1.46 and 2.92 d1, exponential 2
-    INFO(study->alternatives[other].name << ", cost " << study->alternatives[other].cost);
-    // Where a model gets no coarser between the last switches of two plans, they cost the same within a hundredth.
-    CHECK(study->plan.cost < 1.01 * study->alternatives[other].cost);
-    CHECK(study->plan.redundancy < study->alternatives[other].redundancy);
+  for (const SwitchPlan& other : study->alternatives) CHECK(study->design.redundancy < other.redundancy);
+  const double beyond_m = study->last_m - study->first_m;
+  check_cost(study->design, study->fit, *built->model, study->first_m, beyond_m);
+  check_cost(study->design, study->fit, *model_of(loaded->mesh), study->first_m, beyond_m);
+  for (const std::size_t other : {0U, 1U, 3U}) CHECK(study->plan.cost < study->alternatives[other].cost);
+  // Looked at from its switch distance, no level shows; at the same cost, equal intervals do worse.
+  const double shown = study->measured_check.worst_noticeable_ratio();
+  CHECK(shown <= 0.01);
+  for (std::size_t i = 0; i < study->same_cost.size(); ++i) {
+    INFO(study->same_cost[i].name);
+    CHECK(study->same_cost[i].cost <= study->measured.cost);
+    CHECK(study->same_cost[i].cost > 0.97 * study->measured.cost);
+    CHECK(study->same_cost_checks[i].worst_noticeable_ratio() > shown);
   }
-  CHECK(study->measured_check.worst_noticeable_ratio() <= 0.01);
-  CHECK(study->same_cost.front().cost <= study->measured.cost);
-  // Not on every building yet (docs/perception.md), so it is told and not demanded.
-  WARN(id << ": noticeable pixels, measured " << study->measured_check.worst_noticeable_ratio()
-          << ", equal intervals of the same cost " << study->same_cost_checks.front().worst_noticeable_ratio());
 }
 
 }  // namespace
@@ -121,7 +139,7 @@ TEST_CASE("a generated house: falling metric, good fit, levels that look like th
   CHECK(falls(study->samples));
   CHECK(study->fit.r_square >= 0.99);
   CHECK(study->plan.switch_m.size() == 4);
-  for (const SwitchPlan& other : study->alternatives) CHECK(study->plan.redundancy <= other.redundancy);
+  for (const SwitchPlan& other : study->alternatives) CHECK(study->design.redundancy <= other.redundancy);
   CHECK(study->measured_check.worst_noticeable_ratio() <= 0.01);
   CHECK(std::is_sorted(study->measured.levels.rbegin(), study->measured.levels.rend()));
   for (std::size_t i = 0; i < 4; ++i) CHECK(study->measured.levels[i] >= study->plan.levels[i]);
@@ -146,11 +164,11 @@ TEST_CASE("several sides give one plan, within what each side alone would have")
   double least = 1e9;
   double most = 0.0;
   for (const render::SideStudy& side : study->sides) {
-    least = std::min(least, side.plan.switch_m[2]);
-    most = std::max(most, side.plan.switch_m[2]);
+    least = std::min(least, side.design.switch_m[2]);
+    most = std::max(most, side.design.switch_m[2]);
   }
-  CHECK(study->plan.switch_m[2] >= 0.95 * least);
-  CHECK(study->plan.switch_m[2] <= 1.05 * most);
+  CHECK(study->design.switch_m[2] >= 0.95 * least);
+  CHECK(study->design.switch_m[2] <= 1.05 * most);
   CHECK(study->sides[4].side.azimuth_rad == Approx(M_PI / 4.0));
 }
 
@@ -163,7 +181,7 @@ TEST_CASE("adaptive samples give the same fit with fewer pictures") {
   REQUIRE(even.ok());
   REQUIRE(adaptive.ok());
   CHECK(adaptive->fit.r_square >= 0.99);
-  CHECK(adaptive->plan.switch_m[1] == Approx(even->plan.switch_m[1]).epsilon(0.35));
+  CHECK(adaptive->design.switch_m[1] == Approx(even->design.switch_m[1]).epsilon(0.35));
 }
 
 TEST_CASE("pictures for the metric are flat, hard-edged and shrink; what cannot be seen is refused") {
@@ -171,7 +189,7 @@ TEST_CASE("pictures for the metric are flat, hard-edged and shrink; what cannot 
   REQUIRE(stage.ok());
   const Sides sides = find_sides(house()->extract(house()->record_count()));
   const double first_m = first_distance_m(sides.bounds.radius_m, small().display.fov_y_rad);
-  std::size_t before = std::size_t{480} * 384;
+  std::size_t before = std::size_t{320} * 256;
   for (const double times : {1.0, 2.0, 8.0}) {
     const auto picture = (*stage)->picture(sides.front_rad, times * first_m);
     REQUIRE(picture.ok());
@@ -180,11 +198,16 @@ TEST_CASE("pictures for the metric are flat, hard-edged and shrink; what cannot 
     CHECK(pixels < before);
     before = pixels;
   }
-  // Nothing of the object is cut off where it fills the picture.
-  const auto full = (*stage)->picture(sides.front_rad, first_m);
-  for (std::uint32_t x = 0; x < 480; ++x) {
-    CHECK(full->mask[x] == 0);
-    CHECK(full->mask[std::size_t{383} * 480 + x] == 0);
+  // Nothing of the object is cut off where it fills the picture, nor where only the middle of the screen is drawn.
+  for (const double times : {1.0, 3.0, 30.0}) {
+    const auto picture = (*stage)->picture(sides.front_rad, times * first_m);
+    const std::uint32_t width = picture->image.width;
+    const std::uint32_t height = picture->image.height;
+    CHECK((times < 2.0 || width < 320));
+    for (std::uint32_t x = 0; x < width; ++x) {
+      CHECK(picture->mask[x] == 0);
+      CHECK(picture->mask[std::size_t{height - 1} * width + x] == 0);
+    }
   }
   for (const double wrong : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     CHECK_FALSE((*stage)->picture(0.0, wrong).ok());
