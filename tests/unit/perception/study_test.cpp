@@ -91,7 +91,7 @@ void check_building(const std::string& id) {
   const auto built = build_by_facet_shift(loaded->mesh);
   REQUIRE(built.ok());
   render::StudyOptions options;
-  options.samples = 48;
+  options.samples = 40;
   options.levels = 4;
   const auto study = render::study_switch_distances(built->model, options);
   REQUIRE(study.ok());
@@ -142,10 +142,13 @@ TEST_CASE("a generated house: falling metric, good fit, levels that look like th
   for (const SwitchPlan& other : study->alternatives) CHECK(study->design.redundancy <= other.redundancy);
   CHECK(study->measured_check.worst_noticeable_ratio() <= 0.01);
   CHECK(std::is_sorted(study->measured.levels.rbegin(), study->measured.levels.rend()));
-  for (std::size_t i = 0; i < 4; ++i) CHECK(study->measured.levels[i] >= study->plan.levels[i]);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double half_px_m = imperceptible_error_m(study->first_m + study->measured.switch_m[i], study->focal_px);
+    CHECK(house()->error_m(study->measured.levels[i]) <= half_px_m);
+  }
   for (const SwitchPlan& plan : study->same_cost) CHECK(plan.cost <= study->measured.cost);
   // Whatever the number of the renderer's threads (of llvmpipe; it is asked for when a context is made).
-  for (const char* threads : {"0", "1", "8"}) {
+  for (const char* threads : {"1", "8"}) {
     ::setenv("LP_NUM_THREADS", threads, 1);
     const auto again = render::study_switch_distances(house(), small());
     ::unsetenv("LP_NUM_THREADS");
@@ -157,10 +160,10 @@ TEST_CASE("a generated house: falling metric, good fit, levels that look like th
 TEST_CASE("several sides give one plan, within what each side alone would have") {
   render::StudyOptions options = small();
   options.samples = 16;
-  options.sides = {"all", "45"};
+  options.sides = {"front", "right", "45"};
   const auto study = render::study_switch_distances(house(), options);
   REQUIRE(study.ok());
-  REQUIRE(study->sides.size() == 5);
+  REQUIRE(study->sides.size() == 3);
   double least = 1e9;
   double most = 0.0;
   for (const render::SideStudy& side : study->sides) {
@@ -169,7 +172,7 @@ TEST_CASE("several sides give one plan, within what each side alone would have")
   }
   CHECK(study->design.switch_m[2] >= 0.95 * least);
   CHECK(study->design.switch_m[2] <= 1.05 * most);
-  CHECK(study->sides[4].side.azimuth_rad == Approx(M_PI / 4.0));
+  CHECK(study->sides[2].side.azimuth_rad == Approx(M_PI / 4.0));
 }
 
 TEST_CASE("adaptive samples give the same fit with fewer pictures") {
