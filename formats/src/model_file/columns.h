@@ -43,6 +43,8 @@ class ColumnWriter {
   // The extra bits so far, the last byte filled up with zeros.
   [[nodiscard]] Bytes extra() const;
   void clear() noexcept;
+  // At least what it will take in a block.
+  [[nodiscard]] std::size_t size_bytes() const noexcept { return tokens_.size() + extra_.size() + 16; }
 
  private:
   void put_bits(std::uint32_t bits, std::uint32_t count) {

@@ -11,16 +11,12 @@
 #include <lodestone/progressive_model.h>
 
 #include "columns.h"
+#include "envelope.h"
 #include "values.h"
 
 namespace lodestone::model_file {
 
-// The first 8 bytes. The 0x89 and the line ends show when a transfer took the file for text.
-inline constexpr std::uint8_t magic[8] = {0x89, 'L', 'O', 'D', 'E', '\r', '\n', 0x1A};
-inline constexpr std::uint32_t format_version = 1;
-// Magic, u32 version, u32 stored header bytes, u32 raw header bytes, u32 compressed, u64 checksum: see
-// docs/FILE_FORMAT.md.
-inline constexpr std::size_t prologue_bytes = 32;
+inline constexpr FileKind lode_file{{0x89, 'L', 'O', 'D', 'E', '\r', '\n', 0x1A}, 1, ".lode"};
 
 enum class BlockKind : std::uint8_t { Base = 0, Records = 1, Texture = 2 };
 
@@ -47,10 +43,6 @@ struct Header {
 // Prologue and header as they stand at the front of a file.
 [[nodiscard]] Bytes write_header(const Header& header);
 
-struct HeaderFault {
-  ErrorCode code = ErrorCode::BadData;
-  std::string message;
-};
 // How many bytes prologue and header take together, told from the first prologue_bytes.
 [[nodiscard]] std::optional<HeaderFault> header_size(std::span<const std::uint8_t> prologue, std::uint64_t& bytes);
 // `bytes`: prologue and header whole.

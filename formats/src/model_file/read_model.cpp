@@ -207,8 +207,8 @@ Result<std::shared_ptr<const ProgressiveModel>> read_model(const std::filesystem
 
 bool is_model_file(const std::filesystem::path& file) {
   const auto input = Input::open(file, ~0ULL);
-  std::uint8_t front[sizeof(magic)] = {};
-  return input && input->read(0, front) == sizeof(magic) && std::memcmp(front, magic, sizeof(magic)) == 0;
+  std::uint8_t front[sizeof(lode_file.magic)] = {};
+  return input && input->read(0, front) == sizeof(front) && std::memcmp(front, lode_file.magic, sizeof(front)) == 0;
 }
 
 }  // namespace lodestone

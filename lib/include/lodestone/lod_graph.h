@@ -107,6 +107,9 @@ struct AssembledGraph {
                                                     std::span<const NodeDraft> nodes,
                                                     double error_step = default_error_step);
 
+/// The same for a graph whose nodes' bounds or groups' errors were changed: raises and enlarges, never the reverse.
+void keep_promises(LodGraph& graph, double error_step = default_error_step);
+
 /// Checks everything that select_cut() relies on: ranges, order, counts, strictly increasing errors, enclosing spheres.
 /// O(size). For graphs from files: nothing is trusted.
 [[nodiscard]] Status validate(const LodGraph& graph);

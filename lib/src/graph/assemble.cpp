@@ -11,6 +11,45 @@
 namespace lodestone {
 namespace {
 
+// Fine to coarse.
+void raise_errors(LodGraph& graph, double error_step) {
+  for (auto g = static_cast<GroupId>(graph.groups.size()); g-- > 1;) {
+    LodGroup& group = graph.groups[g];
+    for (std::uint32_t i = group.links.begin; i != group.links.end; ++i) {
+      const GroupId maker = graph.links[i].maker;
+      if (maker == none) break;
+      const double below = graph.groups[maker].error_m;
+      group.error_m = std::max({group.error_m, below * (1.0 + error_step), std::nextafter(below, 1e300)});
+    }
+  }
+}
+
+void enlarge_spheres(LodGraph& graph) {
+  std::vector<double> radius_m(graph.groups.size(), 0.0);
+  const auto enclose = [&](GroupId g, const Sphere& inner) {
+    radius_m[g] = std::max(radius_m[g], reach_m(graph.groups[g].bounds, inner));
+  };
+  for (const LodGroup& group : graph.groups) {
+    for (std::uint32_t i = group.links.begin; i != group.links.end; ++i) {
+      const LodLink& link = graph.links[i];
+      for (NodeId n = link.nodes.begin; n != link.nodes.end; ++n) {
+        enclose(static_cast<GroupId>(&group - graph.groups.data()), graph.nodes[n].bounds);
+        if (link.maker != none) enclose(link.maker, graph.nodes[n].bounds);
+      }
+    }
+  }
+  for (auto g = static_cast<GroupId>(graph.groups.size()); g-- > 0;) {
+    LodGroup& group = graph.groups[g];
+    for (std::uint32_t i = group.links.begin; i != group.links.end; ++i) {
+      if (graph.links[i].maker != none) enclose(g, graph.groups[graph.links[i].maker].bounds);
+    }
+    group.bounds.radius_m = std::max(group.bounds.radius_m, radius_m[g]);
+    const glm::dvec3 c = glm::abs(group.bounds.center);
+    // The second term keeps spheres of a point, far from the origin, from missing by a rounding.
+    group.bounds.radius_m += 1e-6 * group.bounds.radius_m + 1e-14 * (c.x + c.y + c.z);
+  }
+}
+
 class Assembly {
  public:
   Assembly(std::span<const GroupDraft> groups, std::span<const NodeDraft> nodes, double error_step)
@@ -21,8 +60,7 @@ class Assembly {
     if (!sort_groups()) return Error{ErrorCode::BadData, "a group holds what was made of it", "groups"};
     place_groups();
     place_nodes();
-    raise_errors();
-    enlarge_spheres();
+    keep_promises(result_.graph, error_step_);
     return std::move(result_);
   }
 
@@ -132,46 +170,6 @@ class Assembly {
     if (!all.empty()) graph.groups[0].bounds.center = all.center();
   }
 
-  void raise_errors() {
-    LodGraph& graph = result_.graph;
-    for (auto g = static_cast<GroupId>(graph.groups.size()); g-- > 1;) {
-      LodGroup& group = graph.groups[g];
-      for (std::uint32_t i = group.links.begin; i != group.links.end; ++i) {
-        const GroupId maker = graph.links[i].maker;
-        if (maker == none) break;
-        const double below = graph.groups[maker].error_m;
-        group.error_m = std::max({group.error_m, below * (1.0 + error_step_), std::nextafter(below, 1e300)});
-      }
-    }
-  }
-
-  void enlarge_spheres() {
-    LodGraph& graph = result_.graph;
-    std::vector<double> radius_m(graph.groups.size(), 0.0);
-    const auto enclose = [&](GroupId g, const Sphere& inner) {
-      radius_m[g] = std::max(radius_m[g], reach_m(graph.groups[g].bounds, inner));
-    };
-    for (const LodGroup& group : graph.groups) {
-      for (std::uint32_t i = group.links.begin; i != group.links.end; ++i) {
-        const LodLink& link = graph.links[i];
-        for (NodeId n = link.nodes.begin; n != link.nodes.end; ++n) {
-          enclose(static_cast<GroupId>(&group - graph.groups.data()), graph.nodes[n].bounds);
-          if (link.maker != none) enclose(link.maker, graph.nodes[n].bounds);
-        }
-      }
-    }
-    for (auto g = static_cast<GroupId>(graph.groups.size()); g-- > 0;) {
-      LodGroup& group = graph.groups[g];
-      for (std::uint32_t i = group.links.begin; i != group.links.end; ++i) {
-        if (graph.links[i].maker != none) enclose(g, graph.groups[graph.links[i].maker].bounds);
-      }
-      group.bounds.radius_m = std::max(group.bounds.radius_m, radius_m[g]);
-      const glm::dvec3 c = glm::abs(group.bounds.center);
-      // The second term keeps spheres of a point, far from the origin, from missing by a rounding.
-      group.bounds.radius_m += 1e-6 * group.bounds.radius_m + 1e-14 * (c.x + c.y + c.z);
-    }
-  }
-
   std::span<const GroupDraft> groups_;
   std::span<const NodeDraft> nodes_;
   double error_step_;
@@ -181,6 +179,11 @@ class Assembly {
 };
 
 }  // namespace
+
+void keep_promises(LodGraph& graph, double error_step) {
+  raise_errors(graph, error_step);
+  enlarge_spheres(graph);
+}
 
 Result<AssembledGraph> assemble_graph(std::span<const GroupDraft> groups, std::span<const NodeDraft> nodes,
                                       double error_step) {

@@ -50,6 +50,7 @@ std::multimap<Triangle, MaterialId> triangles_of(const Mesh& mesh) {
       const glm::vec3& p = mesh.vertices.positions[mesh.indices[3 * f + k]];
       t[k] = {p.x, p.y, p.z};
     }
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     result.emplace(t, mesh.face_material(f));
   }
   return result;
