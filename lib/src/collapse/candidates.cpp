@@ -136,8 +136,7 @@ std::uint8_t add_inner_lines(const WorkingMesh& mesh, const LineRules& rules, st
                                                             mesh.faces[corners[j] >> 2U], point, q);
     sharp += is_sharp ? 1U : 0U;
     if (is_seam) flags |= point_line;
-    const double weight = is_seam ? line_weight : rules.weight;
-    if (is_seam || is_sharp) quadric.add_line(offset(q), weight * glm::dot(offset(q), offset(q)));
+    if (is_seam || is_sharp) quadric.add_line(offset(q), rules.weight * glm::dot(offset(q), offset(q)));
   }
   if (sharp == 2) flags |= point_sharp;
   if (sharp == 1 || sharp > 2) flags |= point_corner;

@@ -28,7 +28,7 @@ struct LineRules {
   const Mesh& source;
   const EdgeCollapseOptions& options;
   bool looks_matter = false;  // seams and material borders are lines
-  double weight = 1.0;        // of borders, contacts and sharp edges
+  double weight = 1.0;
 };
 
 // Sums the quadric of every point over its faces and the lines there, and sets its flags.

@@ -36,6 +36,7 @@ Refusal Collapser::check_topology() {
     if (!link_holds()) return Refusal::Link;
   }
   const bool open = ((fu | fv) & (point_border | point_complex)) != 0;
+  lost_.clear();
   if ((open || state_.loose) && !apexes_stay()) return Refusal::Border;
   if (state_.loose && !state_.keeps_twins) find_twins();
   if (!star_.plain) find_lines();
@@ -72,8 +73,9 @@ bool Collapser::link_holds() {
   return common == star_.shared;
 }
 
-// False if the third corner of a face on the edge would lose its last face.
-bool Collapser::apexes_stay() const {
+// False if the third corner of a face on the edge would lose its last face. In the end it may, at the price of that
+// face: triangles that hang on a point alone could never go otherwise.
+bool Collapser::apexes_stay() {
   const WorkingMesh& mesh = state_.mesh;
   for (const StarFace& f : star_.faces) {
     if (f.side != Side::Both) continue;
@@ -84,7 +86,9 @@ bool Collapser::apexes_stay() const {
       const auto has = [&](std::uint32_t p) { return corner_at(other, p) != 2 || other.point[2] == p; };
       stays = other.id != none && !(has(star_.u) && has(star_.v));
     }
-    if (!stays) return false;
+    if (stays) continue;
+    if (!state_.last_resort || (mesh.flags[apex] & point_frozen) != 0) return false;
+    lost_.push_back({apex, f.a == star_.v ? f.at_b : f.at_a, glm::dot(f.normal, f.normal)});
   }
   // Something must be left for the point that stays.
   return star_.faces.size() > star_.shared;
@@ -120,11 +124,8 @@ void Collapser::find_lines() {
     add_spoke(star_.v, a_is_v ? f.b : f.a, (a_is_v ? f.at_b : f.at_a) - star_.e, f);
   }
   for (const Spoke& s : spokes_) {
-    if (s.faces != 2) {
-      star_.lines.push_back({s.from, s.to, s.direction, state_.line_weight});
-    } else if (state_.looks_matter && looks_differ(s)) {
-      star_.lines.push_back({s.from, s.to, s.direction, line_weight});
-    }
+    const bool line = s.faces != 2 || (state_.looks_matter && looks_differ(s));
+    if (line) star_.lines.push_back({s.from, s.to, s.direction});
   }
 }
 
@@ -188,11 +189,15 @@ bool Collapser::try_place(const glm::dvec3& y) {
   choice_.gone = keep_u ? star_.v : star_.u;
   choice_.moves = !(keep_u ? at_u : at_v);
   choice_.cost = quadric_.cost(choice_.relative);
+  for (const Lost& lost : lost_) {
+    const glm::dvec3 way = choice_.relative - lost.at;
+    choice_.cost += lost.weight * glm::dot(way, way);
+  }
   return true;
 }
 
 Refusal Collapser::choose_place() {
-  quadric_ = sum_star(star_);
+  quadric_ = sum_star(star_, state_.line_weight);
   const Placement placement = state_.options.placement;
   const bool ends_only = placement == Placement::EndPoint || placement == Placement::Subset;
   // A place where the end that cannot go, or may not move, already is.
@@ -225,7 +230,11 @@ float Collapser::error_m() const {
   const glm::dvec3 from_v = choice_.relative - star_.e;
   // No point of the surface goes further than the end it hangs on.
   const double travel = std::max(glm::dot(choice_.relative, choice_.relative), glm::dot(from_v, from_v));
-  const double added = std::min(std::max(error_growth * mean, choice_.squared_distance), travel);
+  double added = std::min(std::max(error_growth * mean, choice_.squared_distance), travel);
+  for (const Lost& lost : lost_) {
+    const glm::dvec3 way = choice_.relative - lost.at;
+    added = std::max(added, glm::dot(way, way));
+  }
   return static_cast<float>(std::sqrt(before * before + added));
 }
 
@@ -233,6 +242,9 @@ void Collapser::commit(std::uint32_t key) {
   WorkingMesh& mesh = state_.mesh;
   const float error = error_m_;
   wedges_.commit(star_, choice_, log_);
+  if (!mesh.has_seams()) {
+    for (const Lost& lost : lost_) log_.vertices.push_back({mesh.wedge[lost.point], mesh.wedge[choice_.kept]});
+  }
   const Side gone_side = choice_.gone == star_.u ? Side::U : Side::V;
   key = std::max({key, state_.last_key[star_.u], state_.last_key[star_.v]});
   for (const StarFace& f : star_.faces) {

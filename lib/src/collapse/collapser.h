@@ -28,6 +28,7 @@ struct PassState {
   bool looks_matter = false;            // there are seams or several materials
   bool loose = false;                   // the link condition is waived
   bool keeps_twins = false;             // both of two equal faces stay
+  bool last_resort = false;             // a corner may lose its last face
   std::vector<std::uint32_t> stamps;    // per point
   std::vector<std::uint32_t> last_key;  // per point: key of the last record that touched it
 };
@@ -47,7 +48,7 @@ class Collapser {
  private:
   [[nodiscard]] Refusal check_topology();
   [[nodiscard]] bool link_holds();
-  [[nodiscard]] bool apexes_stay() const;
+  [[nodiscard]] bool apexes_stay();
   void find_twins();
   // An edge at u or v with the first two of its faces.
   struct Spoke {
@@ -55,6 +56,12 @@ class Collapser {
     glm::dvec3 direction;
     const StarFace* first;
     const StarFace* second;
+  };
+  // A point that loses its last face, and the square of twice that face's area.
+  struct Lost {
+    std::uint32_t point;
+    glm::dvec3 at;
+    double weight;
   };
   void find_lines();
   void add_spoke(std::uint32_t from, std::uint32_t to, const glm::dvec3& direction, const StarFace& face);
@@ -72,6 +79,7 @@ class Collapser {
   Wedges wedges_;
   Star star_;
   std::vector<Spoke> spokes_;
+  std::vector<Lost> lost_;
   StarQuadric quadric_;
   bool u_fixed_ = false, v_fixed_ = false;  // may neither go nor move
   bool u_may_go_ = false, v_may_go_ = false;

@@ -13,6 +13,7 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/radix_sort.h"
@@ -83,6 +84,7 @@ class Engine {
   double diagonal_m_ = 0.0;
   double error_m_ = 0.0;  // largest so far
   bool loose_ = false;
+  bool last_resort_ = false;
   bool soup_ = false;  // not manifold to begin with
   bool looks_matter_ = false;
 };
@@ -182,6 +184,7 @@ bool Engine::pass(double share) {
   state.line_weight = lines;
   state.looks_matter = looks_matter_;
   state.loose = loose_;
+  state.last_resort = last_resort_;
   state.keeps_twins = start_.contacts == Contacts::MayTouch;
   state.share = quota();
   state.stamps.assign(mesh_.point_count(), 0);
@@ -210,9 +213,8 @@ bool Engine::prune_anew() {
 
 // Gives up the next scruple; false if none is left.
 bool Engine::relax() {
-  if (loose_) return false;
-  loose_ = true;
-  return true;
+  bool& scruple = loose_ ? last_resort_ : loose_;
+  return !std::exchange(scruple, true);
 }
 
 bool Engine::prune(double limit_m) {

@@ -43,7 +43,7 @@ glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
 
 }  // namespace
 
-StarQuadric sum_star(const Star& star) {
+StarQuadric sum_star(const Star& star, double weight_of_lines) {
   StarQuadric sum;
   for (const StarFace& f : star.faces) {
     sum.a.add_plane(f.normal);
@@ -58,9 +58,9 @@ StarQuadric sum_star(const Star& star) {
   for (const StarLine& line : star.lines) {
     const double length2 = glm::dot(line.direction, line.direction);
     Symmetric3 m;
-    m.add_line(line.direction, line.weight * length2);
+    m.add_line(line.direction, weight_of_lines * length2);
     sum.a += m;
-    sum.weight += line.weight * length2 * length2;
+    sum.weight += weight_of_lines * length2 * length2;
     if (line.from == star.u) continue;
     const glm::dvec3 b = m * star.e;
     sum.b += b;

@@ -21,7 +21,7 @@ struct StarQuadric {
     return std::max(a.form(y) - 2.0 * glm::dot(b, y) + c, 0.0);
   }
 };
-[[nodiscard]] StarQuadric sum_star(const Star& star);
+[[nodiscard]] StarQuadric sum_star(const Star& star, double weight_of_lines);
 
 // The best place that `placement` allows, relative to u.
 [[nodiscard]] glm::dvec3 best_place(const Star& star, const StarQuadric& quadric, Placement placement);

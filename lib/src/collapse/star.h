@@ -28,7 +28,6 @@ struct StarFace {
 struct StarLine {
   std::uint32_t from = 0, to = 0;  // from is u or v
   glm::dvec3 direction{0.0};
-  double weight = 1.0;
 };
 
 struct Star {

@@ -5,7 +5,7 @@
 namespace lodestone::collapse {
 
 // Weight of a border, seam or feature line of length l: distance^2 * l^4 * weight beside distance^2 * (2 area)^2 of a
-// face. Soup is full of borders that only meet a coplanar neighbour, so there borders count less.
+// face. Soup is full of borders that only meet a coplanar neighbour, so there they count less.
 inline constexpr double line_weight = 1.0;
 inline constexpr double soup_line_weight = 0.1;
 
