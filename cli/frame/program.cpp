@@ -2,8 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <new>
+#include <numeric>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "verb.h"
 #include "version.h"
@@ -35,6 +39,34 @@ bool asks_for_json(int argc, char** argv) {
   return std::any_of(words.begin(), words.end(), [](const char* word) { return std::string_view{word} == "--json"; });
 }
 
+// Letters to add, drop or change to make one word the other (Levenshtein 1966).
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+// A first word that is no verb: the parser would only complain that one is missing.
+std::optional<Error> unknown_verb(const Verbs& verbs, std::string_view word) {
+  if (word.empty() || word.front() == '-') return std::nullopt;
+  const auto distance = [word](const auto& verb) { return edits_between(word, verb->name()); };
+  if (std::any_of(verbs.begin(), verbs.end(), [&](const auto& verb) { return verb->name() == word; })) return {};
+  const auto nearest = std::min_element(verbs.begin(), verbs.end(),
+                                        [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  std::string message = "there is no verb '" + std::string{word} + "'";
+  constexpr std::size_t most_slips = 3;
+  if (distance(*nearest) <= most_slips) message += ", did you mean '" + (*nearest)->name() + "'?";
+  return Error{ErrorCode::BadArgument, message + "; see lodestone --help", ""};
+}
+
 }  // namespace
 
 int run_program(const Verbs& verbs, int argc, char** argv) {
@@ -53,6 +85,11 @@ int run_program(const Verbs& verbs, int argc, char** argv) {
     declare_common(*sub, common);
     sub->footer("Example:\n  " + verb->example());
     sub->callback([&chosen, &verb] { chosen = verb.get(); });
+  }
+  if (const auto error = unknown_verb(verbs, argc > 1 ? argv[1] : "")) {
+    common.json = asks_for_json(argc, argv);
+    Session session{common};
+    return session.finish(*error);
   }
   try {
     app.parse(argc, argv);

@@ -47,7 +47,7 @@ void Build::declare(Arguments& arguments) {
   arguments.count("--target-triangles", target_triangles_, 0, none,
                   "Stop at so many triangles, 0 = as few as possible");
   arguments.length_m("--max-error", max_error_m_, "Stop before the error exceeds this");
-  arguments.count("--quantize", quantize_bits_, 0, 24, "Bits per coordinate in the file, 0 = lossless");
+  arguments.count("--quantize", quantize_bits_, 0, 20, "Bits per coordinate in the file, 0 = lossless");
   arguments.flag("--reference-textures", reference_textures_, "Refer to texture files instead of embedding them");
 }
 
@@ -99,6 +99,7 @@ Status Build::run(Session& session) {
   if (output_.extension() != ".lode") {
     return Error{ErrorCode::BadArgument, "models are written as .lode", output_.string()};
   }
+  if (auto writable = check_output(output_); !writable) return writable;
   auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   const Mesh source = std::move(loaded->mesh);

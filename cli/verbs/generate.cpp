@@ -55,6 +55,7 @@ Result<Mesh> Generate::make(const Context& context) const {
 }
 
 Status Generate::run(Session& session) {
+  if (auto writable = check_output(output_); !writable) return writable;
   auto mesh = make(session.context());
   session.keep(mesh);
   if (!mesh) return mesh.error();

@@ -27,7 +27,7 @@ int LevelChoice::ways() const noexcept {
 Result<Level> LevelChoice::in(const ProgressiveModel& model) const {
   if (triangles_) return model.level_of_triangles(*triangles_);
   if (ratio_) {
-    return model.level_of_triangles(static_cast<std::uint32_t>(std::floor(*ratio_ * model.face_slot_count())));
+    return model.level_of_triangles(static_cast<std::uint32_t>(std::lround(*ratio_ * model.face_slot_count())));
   }
   if (perceptual_m_) return model.level_of_error(imperceptible_error_m(*perceptual_m_, focal_length_px(Display{})));
   if (error_m_) return model.level_of_error(*error_m_);

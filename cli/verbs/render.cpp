@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
+
 #include "camera_options.h"
 #include "level_choice.h"
 #include "mesh_input.h"
@@ -50,9 +52,11 @@ void Render::declare(Arguments& arguments) {
 Result<render::Picture> Render::draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
                                            const render::RenderOptions& options) const {
   if (level_.ways() > 0) return Error{ErrorCode::BadArgument, "--sheet shows many levels, do not name one", ""};
+  const auto start = std::chrono::steady_clock::now();
   auto sheet = render::picture_sheet(model, {.levels = sheet_levels_, .render = options});
   if (!sheet) return sheet.error();
-  return render::Picture{std::move(*sheet), model->face_slot_count(), 0.0};
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return render::Picture{std::move(*sheet), model->face_slot_count(), seconds / sheet_levels_};
 }
 
 Result<render::Picture> Render::draw_model(Session& session, const render::RenderOptions& options) const {
@@ -82,6 +86,7 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
 }
 
 Status Render::run(Session& session) {
+  if (auto writable = check_output(output_); !writable) return writable;
   render::RenderOptions options;
   camera_.apply(options);
   options.look.wireframe = wireframe_;

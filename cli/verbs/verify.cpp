@@ -17,9 +17,19 @@ class Verify final : public Verb {
   [[nodiscard]] Status run(Session& session) override;
 
  private:
+  [[nodiscard]] std::string why(const std::string& difference) const;
+
   std::filesystem::path model_;
   MeshInput source_;
 };
+
+// A file that was quantised cannot be its source to the bit, and nothing is broken.
+std::string Verify::why(const std::string& difference) const {
+  const auto bits = quantize_bits_of(model_);
+  if (!bits || *bits == 0) return difference;
+  return "it was quantised to " + std::to_string(*bits) +
+         " bits, build it without --quantize to keep the source exactly, or see how far it is with `lodestone compare`";
+}
 
 Status Verify::run(Session& session) {
   auto model = read_model(model_, {}, session.context());
@@ -39,7 +49,7 @@ Status Verify::run(Session& session) {
     if (!source) return source.error();
     const std::string difference = compare_with_source(**model, source->mesh);
     report.set("source_matches", difference.empty());
-    if (fault.empty() && !difference.empty()) fault = "differs from the source: " + difference;
+    if (fault.empty() && !difference.empty()) fault = "differs from the source: " + why(difference);
   }
   if (!fault.empty()) return Error{ErrorCode::BadData, fault, model_.string()};
   return Done{};

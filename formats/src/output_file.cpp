@@ -16,13 +16,30 @@ Error write_error(const std::filesystem::path& file) {
   return Error{ErrorCode::Unreadable, std::string{"cannot be written: "} + std::strerror(errno), file.string()};
 }
 
+// The file that is to be replaced: where a link leads to, and never a device, a pipe or a folder, which a rename would
+// put an end to.
+Result<std::filesystem::path> place_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const bool link = std::filesystem::is_symlink(file, error);
+  auto place = link ? std::filesystem::canonical(file, error) : file;
+  if (link && error)
+    return Error{ErrorCode::Unreadable, "cannot be written: it is a link that leads nowhere", file.string()};
+  const auto kind = std::filesystem::status(place, error).type();
+  if (kind == std::filesystem::file_type::not_found || kind == std::filesystem::file_type::regular) return place;
+  if (error) return Error{ErrorCode::Unreadable, "cannot be written: " + error.message(), file.string()};
+  return Error{ErrorCode::Unreadable, "cannot be written: there is something of that name that is not a plain file",
+               file.string()};
+}
+
 }  // namespace
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& file) {
   static std::atomic<unsigned> serial{0};
+  auto place = place_of(file);
+  if (!place) return place.error();
   OutputFile out;
-  out.file_ = file;
-  out.beside_ = file;
+  out.file_ = std::move(*place);
+  out.beside_ = out.file_;
   out.beside_ += ".part" + std::to_string(::getpid()) + '-' + std::to_string(serial++);
   const int descriptor = ::open(out.beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return write_error(file);
@@ -75,6 +92,12 @@ Status OutputFile::commit() {
     ::unlink(beside_.c_str());
     return error;
   }
+  return Done{};
+}
+
+Status check_output(const std::filesystem::path& file) {
+  const auto out = OutputFile::create(file);
+  if (!out) return out.error();
   return Done{};
 }
 

@@ -179,6 +179,14 @@ class Keys(Contract):
         run("generate", "house", "--triangles", 3000, "--roof", "flat", "--texture-size", 64, "-o", other)
         self.assertIs(self.json("verify", self.model, "--source", other, code=2)["source_matches"], False)
 
+    def test_verify_says_that_a_quantised_model_cannot_be_its_source(self):
+        coarse = self.scratch / "coarse.lode"
+        self.json("build", self.house, "--quantize", 12, "-o", coarse)
+        found = self.json("verify", coarse, "--source", self.house, code=2)
+        self.assertIs(found["source_matches"], False)
+        self.assertIs(found["exact"], True)
+        self.assertIn("quantised to 12 bits", found["error"]["message"])
+
     def test_play(self):
         found = self.keys("records refine_records_per_second coarsen_records_per_second seek_seconds_p50 "
                           "seek_seconds_p99 bytes_per_triangle allocations", "play", self.model)
@@ -226,6 +234,10 @@ class Keys(Contract):
         coarse = self.json("render", self.model, "--triangles", 400, "--wireframe", "--lod-colors", "--size", "160x120",
                            "--eye", "30,-30,20", "--target", "0,0,3", "--fov", 50, "-o", out)
         self.assertLessEqual(coarse["triangles"], 400)
+
+    def test_render_times_a_sheet(self):
+        found = self.json("render", self.model, "--sheet", 2, "--size", "80x60", "-o", self.scratch / "sheet.png")
+        self.assertGreater(found["frame_seconds"], 0)
 
     def test_sweep(self):
         wanted = "frames pop_max pop_mean frame_seconds_p50 frame_seconds_p99 memory_bytes"
@@ -322,6 +334,23 @@ class Failures(Contract):
         self.fails(1, "generate", "castle", "-o", self.scratch / "a.obj")
         self.fails(1, "generate", "terrain", "--roof", "hip", "-o", self.scratch / "a.obj")
 
+    def test_an_unknown_verb_names_the_nearest(self):
+        self.assertIn("did you mean 'build'", self.fails(1, "biuld", self.house))
+        self.assertNotIn("did you mean", self.fails(1, "castle", self.house))
+        self.assertIn("'castle'", self.json("castle", code=1)["error"]["message"])
+
+    def test_too_few_triangles_are_a_warning(self):
+        for kind in ("house", "outcrop"):
+            found = self.json("generate", kind, "--triangles", 10, "--texture-size", 16, "-o", self.scratch / "a.ply")
+            self.assertIn("too few", found["warnings"][0])
+
+    def test_ratios_are_rounded(self):
+        whole = self.json("inspect", self.model)["triangles"]
+        for wanted in (whole - 2, whole // 3 * 2):
+            found = self.json("extract", self.model, "--ratio", (wanted - 1e-3) / whole, "-o", self.scratch / "a.obj")
+            self.assertEqual(found["triangles"],
+                             self.json("extract", self.model, "--triangles", wanted, "-o", self.scratch / "a.obj")["triangles"])
+
     def test_automatic_choices_are_said(self):
         done = run("build", self.house, "-o", self.scratch / "a.lode")
         self.assertIn("facet-shift, because", done.stderr)
@@ -381,6 +410,30 @@ class Failures(Contract):
         self.fails(2, "build", self.house, "-o", self.house / "a.lode", "--quiet")
         self.fails(2, "convert", self.house, "-o", "/proc/a.ply")
         self.assertIn(".xyz", self.fails(1, "convert", self.house, "-o", self.scratch / "a.xyz"))
+
+    def test_what_is_no_plain_file_is_never_replaced(self):
+        pipe = self.scratch / "pipe.lode"
+        os.mkfifo(pipe)
+        self.assertIn("not a plain file", self.fails(2, "build", self.house, "-o", pipe, "--quiet"))
+        self.assertTrue(pipe.is_fifo())
+        folder = self.scratch / "folder.ply"
+        folder.mkdir()
+        self.fails(2, "convert", self.house, "-o", folder)
+        self.assertTrue(folder.is_dir())
+        link = self.scratch / "link.ply"
+        link.symlink_to("behind.ply")
+        self.assertIn("leads nowhere", self.fails(2, "convert", self.house, "-o", link))
+        (self.scratch / "behind.ply").write_text("old")
+        self.assertEqual(run("convert", self.house, "-o", link).returncode, 0)
+        self.assertTrue(link.is_symlink())
+        self.assertEqual((self.scratch / "behind.ply").read_bytes()[:3], b"ply")
+
+    def test_the_place_is_tried_before_the_work(self):
+        missing = self.scratch / "missing.obj"
+        for words in (("build", missing, "-o", self.scratch / "no" / "a.lode"), ("render", missing, "-o", "/proc/a.png"),
+                      ("generate", "outcrop", "--triangles", "90M", "-o", self.scratch / "no" / "a.ply")):
+            self.assertIn(str(words[-1]), self.fails(2, *words))
+        self.assertEqual(list(self.scratch.iterdir()), [])
 
     def test_a_window_without_a_display_is_one_line(self):
         bare = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}

@@ -2,6 +2,7 @@
 #include "app.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <lodestone/formats.h>
 
@@ -112,7 +113,7 @@ void App::show(const Loader::Model& model) {
                 static_cast<std::uint32_t>(std::max(1, height)), detailed_yaw_rad(arrays_of(shown_->cursor)));
   if (first && options_.ratio) {
     const auto finest = static_cast<double>(model->info(model->record_count()).triangles);
-    control_.slider = control_.slider_of(static_cast<std::uint32_t>(*options_.ratio * finest));
+    control_.slider = control_.slider_of(static_cast<std::uint32_t>(std::lround(*options_.ratio * finest)));
   }
   if (first && options_.play) control_.mode = LevelMode::Sweep;
   if (first && options_.perceptual) {

@@ -55,6 +55,10 @@ struct LoadedMesh {
   SourceInfo info;
 };
 
+/// Whether the writers below could put a file there: its folder exists and may be written, and nothing but a plain file
+/// has its name (devices, pipes and folders are never replaced). To be asked before long work. Leaves nothing behind.
+[[nodiscard]] Status check_output(const std::filesystem::path& file);
+
 /// Reads OBJ+MTL, PLY, glTF 2.0 / GLB, 3DS, CityJSON 1.1 and 2.0, CityGML 2.0, and what else assimp reads (IFC, DAE,
 /// FBX, STL, ...). A .lode file gives its finest level.
 [[nodiscard]] Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOptions& options = {},
@@ -86,6 +90,9 @@ struct ModelReadOptions {
 [[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> read_model(const std::filesystem::path& file,
                                                                          const ModelReadOptions& options = {},
                                                                          const Context& context = {});
+
+/// To how many bits per coordinate a .lode file was quantised, 0 = lossless. Reads the header only.
+[[nodiscard]] Result<std::uint32_t> quantize_bits_of(const std::filesystem::path& file);
 
 /// True if the file begins like a .lode file.
 [[nodiscard]] bool is_model_file(const std::filesystem::path& file);

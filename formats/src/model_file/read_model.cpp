@@ -20,6 +20,11 @@ class ModelReader {
         available_(max_bytes == 0 ? input.size() : std::min(max_bytes, input.size())),
         asked_for_less_(max_bytes != 0 && max_bytes < input.size()) {}
 
+  Result<std::uint32_t> quantize_bits() {
+    if (auto fault = read_front()) return *std::move(fault);
+    return header_.grid.bits;
+  }
+
   Result<std::shared_ptr<const ProgressiveModel>> read() {
     if (auto fault = read_front()) return *std::move(fault);
     if (auto fault = load_blocks()) return *std::move(fault);
@@ -203,6 +208,12 @@ Result<std::shared_ptr<const ProgressiveModel>> read_model(const std::filesystem
   const auto input = Input::open(file, any_size);
   if (!input) return input.error();
   return ModelReader{*input, options.max_bytes, context}.read();
+}
+
+Result<std::uint32_t> quantize_bits_of(const std::filesystem::path& file) {
+  const auto input = Input::open(file, ~0ULL);
+  if (!input) return input.error();
+  return ModelReader{*input, 0, {}}.quantize_bits();
 }
 
 bool is_model_file(const std::filesystem::path& file) {

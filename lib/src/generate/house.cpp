@@ -67,8 +67,7 @@ Result<Mesh> generate_house(const HouseOptions& options, const Context& context)
   const Palette palette = add_palette(mesh, options.seed);
   append_house(mesh, palette, options.roof, options.seed, options.triangles == 0 ? 30'000 : options.triangles, "",
                context);
-  if (context.cancelled()) return Error{ErrorCode::Cancelled, "generation was cancelled", {}};
-  return mesh;
+  return finish(std::move(mesh), options, context);
 }
 
 }  // namespace lodestone

@@ -10,6 +10,8 @@
 #include <lodestone/generate.h>
 #include <lodestone/mesh.h>
 
+#include "generate/sheet.h"
+
 namespace lodestone::generate {
 
 [[nodiscard]] inline Image blank(std::uint32_t size_px) {
@@ -27,7 +29,7 @@ inline void put(Image& image, std::uint32_t x, std::uint32_t y, const glm::vec3&
   for (int c = 0; c < 3; ++c) texel[c] = static_cast<std::uint8_t>(std::clamp(color[c], 0.0F, 1.0F) * 255.0F + 0.5F);
 }
 
-// Completes a sheet: its pixels if they are wanted, or the error that it was cancelled.
+// Completes a sheet: its pixels, if they are wanted.
 template <class MakeImage>
 [[nodiscard]] Result<Mesh> with_pixels(Mesh mesh, const GenerateOptions& options, const Context& context,
                                        MakeImage make_image) {
@@ -36,8 +38,7 @@ template <class MakeImage>
     context.report("painting", static_cast<double>(i) / static_cast<double>(mesh.textures.size()));
     mesh.textures[i].image = std::make_shared<const Image>(make_image(options, i, context));
   }
-  if (context.cancelled()) return Error{ErrorCode::Cancelled, "generation was cancelled", {}};
-  return mesh;
+  return finish(std::move(mesh), options, context);
 }
 
 }  // namespace lodestone::generate

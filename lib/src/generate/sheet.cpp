@@ -110,6 +110,19 @@ void name_looks(const SheetLayout& layout, const SheetKind& kind, Mesh& mesh) {
 
 }  // namespace
 
+Result<Mesh> finish(Mesh mesh, const GenerateOptions& options, const Context& context) {
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "generation was cancelled", {}};
+  const std::uint32_t made = mesh.triangle_count();
+  std::vector<Warning> warnings;
+  // Sheets of many triangles are off by up to 2 %.
+  if (options.triangles > 0 && made > options.triangles + options.triangles / 50 + 1) {
+    warnings.push_back({std::to_string(options.triangles) + " triangles are too few to draw this, the plainest has " +
+                            std::to_string(made),
+                        {}});
+  }
+  return {std::move(mesh), std::move(warnings)};
+}
+
 Status check_options(const GenerateOptions& options) {
   const auto bad = [](const char* message, const char* where) { return Error{ErrorCode::BadArgument, message, where}; };
   if (options.triangles > max_triangles) return bad("at most 100 million triangles can be generated", "triangles");

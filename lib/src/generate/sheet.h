@@ -38,6 +38,9 @@ struct SheetKind {
 };
 
 [[nodiscard]] Status check_options(const GenerateOptions& options);
+// What every generator ends with: the mesh, with a warning if fewer triangles were asked than its kind takes, or the
+// error that it was cancelled.
+[[nodiscard]] Result<Mesh> finish(Mesh mesh, const GenerateOptions& options, const Context& context);
 [[nodiscard]] SheetLayout lay_out(const GenerateOptions& options, const SheetKind& kind);
 [[nodiscard]] Mesh make_sheet(const SheetLayout& layout, const SheetKind& kind, const glm::dvec3& origin,
                               const Context& context);

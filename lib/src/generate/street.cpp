@@ -178,8 +178,7 @@ Result<Mesh> generate_street(const GenerateOptions& options, const Context& cont
   }
   ground.draw(-4.0, std::max(ends[0], ends[1]) + 2.0, 24.0);
   ground.emit(wanted - std::min(wanted, mesh.triangle_count()));
-  if (context.cancelled()) return Error{ErrorCode::Cancelled, "generation was cancelled", {}};
-  return mesh;
+  return finish(std::move(mesh), options, context);
 }
 
 }  // namespace lodestone

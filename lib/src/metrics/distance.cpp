@@ -89,6 +89,9 @@ Result<MeshDistance> compare(const Mesh& a, const Mesh& b, const DistanceOptions
   result.b_to_a = one_side(b, surface_a, a.origin - b.origin, options, context);
   context.report("distance", 0.8);
   result.hausdorff_m = std::max(result.a_to_b.max_m, result.b_to_a.max_m);
+  if (!std::isfinite(result.hausdorff_m)) {
+    return Error{ErrorCode::BadData, "the meshes cannot be compared: a coordinate is not a finite number", {}};
+  }
   result.mean_m = 0.5 * (result.a_to_b.mean_m + result.b_to_a.mean_m);
   result.rms_m =
       std::sqrt(0.5 * (result.a_to_b.rms_m * result.a_to_b.rms_m + result.b_to_a.rms_m * result.b_to_a.rms_m));

@@ -196,7 +196,7 @@ void Cursor::set_target(const Target& target) noexcept {
       state_->target = model_->level_of_triangles(count(value));
       break;
     case Target::Kind::ByRatio:
-      state_->target = model_->level_of_triangles(count(value * model_->triangle_count()));
+      state_->target = model_->level_of_triangles(count(std::round(value * model_->triangle_count())));
       break;
     case Target::Kind::ByError:
       state_->target = model_->level_of_error(value);

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <lodestone/metrics.h>
@@ -200,6 +201,15 @@ TEST_CASE("a cancelled comparison says so") {
   const auto result = compare(test::cube(), test::cube(), {}, {.cancel = &cancel});
   REQUIRE_FALSE(result.ok());
   CHECK(result.error().code == ErrorCode::Cancelled);
+}
+
+TEST_CASE("meshes that cannot be compared are an error, not an infinite distance") {
+  const Mesh sphere = test::sphere(8, 16);
+  Mesh spoilt = sphere;
+  spoilt.vertices.positions[spoilt.indices[0]].x = std::numeric_limits<float>::quiet_NaN();
+  CHECK_FALSE(compare(spoilt, sphere));
+  CHECK_FALSE(compare(sphere, Mesh{}));
+  CHECK_FALSE(compare(Mesh{}, sphere));
 }
 
 TEST_CASE("samples are spread by area and lie on their faces") {
