@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
   verbs.push_back(make_render());
   verbs.push_back(make_compare());
   verbs.push_back(make_outcrop());
+  verbs.push_back(make_clusters());
+  verbs.push_back(make_cut());
   verbs.push_back(make_distances());
   verbs.push_back(make_terrain());
   verbs.push_back(make_view());

@@ -19,6 +19,8 @@ namespace lodestone::cli {
 [[nodiscard]] std::unique_ptr<Verb> make_render();
 [[nodiscard]] std::unique_ptr<Verb> make_compare();
 [[nodiscard]] std::unique_ptr<Verb> make_outcrop();
+[[nodiscard]] std::unique_ptr<Verb> make_clusters();
+[[nodiscard]] std::unique_ptr<Verb> make_cut();
 [[nodiscard]] std::unique_ptr<Verb> make_distances();
 [[nodiscard]] std::unique_ptr<Verb> make_terrain();
 [[nodiscard]] std::unique_ptr<Verb> make_view();
