@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 namespace lodestone::collapse {
 namespace {
@@ -89,6 +88,25 @@ void Wedges::make_pairs(const Star& star, const Choice& choice) {
     const VertexId to = mesh_.vertex_of(face, corner_at(face, choice.kept));
     if (target_of(from) == from) pairs_.push_back({from, to});
   }
+  if (options_.placement == Placement::Subset) pair_the_rest(star, choice);
+}
+
+// No vertex may move: what has no partner on the edge takes the vertex at the place that looks most like it.
+void Wedges::pair_the_rest(const Star& star, const Choice& choice) {
+  const Side gone_side = choice.gone == star.u ? Side::U : Side::V;
+  for (const StarFace& f : star.faces) {
+    if (f.side != gone_side || f.twin) continue;
+    const VertexId from = mesh_.vertex_of(mesh_.faces[f.index], f.k);
+    if (target_of(from) != from) continue;
+    Nearest nearest;
+    for (const StarFace& s : star.faces) {
+      if (s.side == gone_side) continue;
+      const Face& face = mesh_.faces[s.index];
+      const VertexId v = mesh_.vertex_of(face, corner_at(face, choice.kept));
+      nearest.offer(v, look_distance(v, from));
+    }
+    if (nearest.vertex != none) pairs_.push_back({from, nearest.vertex});
+  }
 }
 
 // Weighted means of what the faces of each group predict at the new place.
@@ -144,6 +162,7 @@ double Wedges::residual(const Star& star, const Choice& choice) {
   const VertexArrays& values = mesh_.values;
   // A normal that turns over the length of the edge says as much as a distance of angle times length.
   const double normal_scale2 = options_.normal_weight * options_.normal_weight * glm::dot(star.e, star.e);
+  const bool turns = options_.placement != Placement::Subset;  // flat normals do, with their faces
   for (const StarFace& f : star.faces) {
     const double square = glm::dot(f.normal, f.normal);
     if (square <= 0.0) continue;
@@ -162,7 +181,7 @@ double Wedges::residual(const Star& star, const Choice& choice) {
       if (!values.colors.empty()) color -= weights[c] * glm::dvec4{values.colors[corners[c]]};
     }
     double scatter = 0.0;
-    if (!values.normals.empty() && !group.flat) scatter += normal_scale2 * glm::dot(normal, normal);
+    if (!values.normals.empty() && !(group.flat && turns)) scatter += normal_scale2 * glm::dot(normal, normal);
     if (!values.uvs.empty()) scatter += uv_scale_ * uv_scale_ * glm::dot(uv, uv);
     if (!values.colors.empty()) scatter += color_scale_ * color_scale_ * glm::dot(color, color);
     sum += square * scatter;
@@ -211,23 +230,19 @@ double Wedges::look_distance(VertexId a, VertexId b) const {
 }
 
 VertexId Wedges::nearest_look_at(std::uint32_t point, VertexId to) const {
-  VertexId best = none;
-  double least = 0.0;
+  Nearest nearest;
   for (std::uint32_t i = mesh_.first[point]; i != mesh_.first[point + 1]; ++i) {
     const Face& f = mesh_.faces[mesh_.corners[i] >> 2U];
     if (f.id == none) continue;
     const VertexId v = mesh_.vertex_of(f, mesh_.corners[i] & 3U);
-    const double distance = look_distance(v, to);
-    if (best != none && (distance > least || (distance == least && v >= best))) continue;
-    best = v;
-    least = distance;
+    nearest.offer(v, look_distance(v, to));
   }
-  return best;
+  return nearest.vertex;
 }
 
 // Faces whose normal their vertices carried keep that: the vertices of one face only turn with it.
 void Wedges::turn_flat_normals(const Star& star, const Choice& choice, PassLog& log) {
-  if (!mesh_.has_seams() || mesh_.values.normals.empty()) return;
+  if (options_.placement == Placement::Subset || mesh_.values.normals.empty()) return;
   for (const StarFace& f : star.faces) {
     const Face& face = mesh_.faces[f.index];
     if (f.side == Side::Both || f.twin) continue;
@@ -318,18 +333,14 @@ VertexId Wedges::heir(const Star& star, const Choice& choice, const Dead& dead) 
     // A corner whose last face went along has nothing left at its place: it goes to the vertex kept.
     if (const VertexId there = nearest_look_at(dead.point, dead.vertex); there != none) return there;
   }
-  VertexId best = dead.vertex;
-  double least = std::numeric_limits<double>::infinity();
+  Nearest nearest;
   for (const StarFace& f : star.faces) {
     const Face& face = mesh_.faces[f.index];
     if (face.id == none) continue;
     const VertexId v = mesh_.vertex_of(face, f.k);
-    const double distance = look_distance(v, dead.vertex);
-    if (distance > least || (distance == least && v >= best)) continue;
-    best = v;
-    least = distance;
+    nearest.offer(v, look_distance(v, dead.vertex));
   }
-  return best;
+  return nearest.vertex == none ? dead.vertex : nearest.vertex;
 }
 
 }  // namespace lodestone::collapse

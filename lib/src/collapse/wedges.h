@@ -55,6 +55,17 @@ class Wedges {
     VertexId from = none, to = none;
   };
 
+  // The nearest of what was offered, the smallest id among equals.
+  struct Nearest {
+    VertexId vertex = none;
+    double distance = 0.0;
+    void offer(VertexId v, double away) noexcept {
+      if (vertex != none && (away > distance || (away == distance && v >= vertex))) return;
+      vertex = v;
+      distance = away;
+    }
+  };
+
   struct Dead {
     VertexId vertex = none;
     std::uint32_t point = none;  // where it was
@@ -65,6 +76,7 @@ class Wedges {
   [[nodiscard]] VertexId target_of(VertexId vertex) const;
   Group& group_of(VertexId vertex);
   void make_pairs(const Star& star, const Choice& choice);
+  void pair_the_rest(const Star& star, const Choice& choice);
   void predict(const Star& star, const Choice& choice);
   [[nodiscard]] double residual(const Star& star, const Choice& choice);
   void log_move(VertexId vertex, const glm::vec3& position, PassLog& log);

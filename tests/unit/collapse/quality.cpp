@@ -123,14 +123,24 @@ TEST_CASE("sharp edges are kept as features") {
   CHECK_FALSE(result->report.sentence.empty());
 }
 
-TEST_CASE("subset placement moves no vertex of a smooth mesh") {
-  const Mesh mesh = test::sphere(30, 40);
-  EdgeCollapseOptions options;
-  options.placement = Placement::Subset;
-  const auto built = build_by_edge_collapse(mesh, options);
-  REQUIRE(built.ok());
-  CHECK(built->model->record_count() > 100);
-  CHECK(built->model->data().value_xor.empty());
+TEST_CASE("subset placement moves no vertex, seams and unwelded faces included") {
+  std::vector<test::NamedMesh> meshes = test::mesh_families();
+  meshes.push_back({"smooth sphere", test::sphere(30, 40)});
+  meshes.push_back({"large unwelded sphere", test::unwelded(test::sphere(30, 40))});
+  meshes.push_back({"large seamed grid", test::seamed_grid(40, 30)});
+  const auto house = generate_house({GenerateOptions{.triangles = 4'000, .texture_size_px = 16}});
+  REQUIRE(house.ok());
+  meshes.push_back({"house", *house});
+  for (const auto& [name, mesh] : meshes) {
+    CAPTURE(name);
+    EdgeCollapseOptions options;
+    options.placement = Placement::Subset;
+    const auto built = build_by_edge_collapse(mesh, options);
+    REQUIRE(built.ok());
+    CHECK(built->model->data().value_xor.empty());
+    CHECK(validate(*built->model).fault.empty());
+    if (mesh.triangle_count() > 1000) CHECK(built->model->info(0).triangles < mesh.triangle_count() / 20);
+  }
 }
 
 TEST_CASE("a limit on the error is kept") {
