@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <lodestone/tile_loader.h>
+
 #include <chrono>
 
 #include "camera_options.h"
@@ -22,6 +24,7 @@ class Render final : public Verb {
  private:
   [[nodiscard]] Result<render::Picture> draw(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_model(Session& session, const render::RenderOptions& options) const;
+  [[nodiscard]] Result<render::Picture> draw_tiles(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
                                                    const render::RenderOptions& options) const;
 
@@ -37,7 +40,7 @@ class Render final : public Verb {
 };
 
 void Render::declare(Arguments& arguments) {
-  input_.declare(arguments, "FILE", "Mesh or .lode file");
+  input_.declare(arguments, "FILE", "Mesh, .lode file or tileset.json");
   arguments.file("-o,--output", output_, "Picture to write: .png, .jpg or .webp", Need::Required);
   level_.declare(arguments);
   camera_.declare(arguments);
@@ -70,6 +73,31 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
   return render::render_level(*model, *level, options);
 }
 
+// The tiles that this camera needs, none coarser than a pixel.
+Result<render::Picture> Render::draw_tiles(Session& session, const render::RenderOptions& options) const {
+  const auto pyramid = TilePyramid::open(input_.file());
+  if (!pyramid) return pyramid.error();
+  TilePager pager{*pyramid};
+  const Mesh* root = pager.status().resident_tiles > 0 ? pager.content(0) : nullptr;
+  if (root == nullptr) return Error{ErrorCode::BadData, pager.status().failures.front(), input_.file().string()};
+  Mesh framed = *root;
+  framed.origin = (*pyramid)->origin();
+  const auto view = render::view_of_mesh(framed, options);
+  if (!view) return view.error();
+  std::vector<const Mesh*> tiles;
+  for (const NodeId tile : pager.settle(*view)) tiles.push_back(pager.content(tile));
+  std::vector<Warning> failures;
+  for (const std::string& line : pager.status().failures) failures.push_back({line, input_.file().string()});
+  session.keep(std::move(failures));
+  session.report().set("tiles", static_cast<std::uint32_t>(tiles.size()));
+  Mesh whole = merged(tiles);
+  whole.origin = (*pyramid)->origin();
+  render::RenderOptions same = options;
+  same.camera.eye_m = whole.origin + view->eye;
+  same.camera.target_m = whole.origin + view->eye + view->forward;
+  return render::render_mesh(whole, same);
+}
+
 Result<render::Picture> Render::draw(Session& session, const render::RenderOptions& options) const {
   if (level_.ways() > 1) {
     return Error{ErrorCode::BadArgument,
@@ -80,6 +108,7 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
     return Error{ErrorCode::BadArgument, "levels are chosen from a .lode file, build one first",
                  input_.file().string()};
   }
+  if (is_tileset_file(input_.file())) return draw_tiles(session, options);
   const auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   return render::render_mesh(loaded->mesh, options);

@@ -19,6 +19,7 @@
 #include <lodestone/mesh.h>
 #include <lodestone/progressive_model.h>
 #include <lodestone/result.h>
+#include <lodestone/view.h>
 
 #include "../render/options.h"
 
@@ -53,6 +54,9 @@ struct Picture {
 [[nodiscard]] Result<Picture> render_mesh(const Mesh& mesh, const RenderOptions& options = {});
 [[nodiscard]] Result<Picture> render_level(std::shared_ptr<const ProgressiveModel> model, Level level,
                                            const RenderOptions& options = {});
+
+/// The view that render_mesh() takes of a mesh, relative to its origin: to choose tiles or clusters by, before drawing.
+[[nodiscard]] Result<View> view_of_mesh(const Mesh& mesh, const RenderOptions& options = {});
 
 /// How a sweep goes from level to level.
 enum class SweepStyle : std::uint8_t {

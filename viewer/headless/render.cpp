@@ -41,6 +41,11 @@ Result<Picture> render_mesh(const Mesh& mesh, const RenderOptions& options) {
   return picture_of(sorted.arrays(), sorted.arrays(), mesh, bounds(mesh), options);
 }
 
+Result<View> view_of_mesh(const Mesh& mesh, const RenderOptions& options) {
+  const SortedMesh sorted{mesh};
+  return view_of(options, bounds(mesh), mesh.origin, sorted.arrays());
+}
+
 Result<Picture> render_level(std::shared_ptr<const ProgressiveModel> model, Level level, const RenderOptions& options) {
   const Cursor cursor{model, {.motion = Motion::Hard, .start_level = level}};
   // Every level is seen from the same side.

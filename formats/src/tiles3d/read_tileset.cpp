@@ -7,6 +7,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include <lodestone/tile_loader.h>
+
+#include "images/codecs.h"
 #include "reader.h"
 
 namespace lodestone {
@@ -86,9 +89,12 @@ Tileset tileset_of(const Json& json) {
     if (t.size() != 16) throw Fault{"a transform has 16 numbers"};
     out.origin = {finite(t[12]), finite(t[13]), finite(t[14])};
   }
-  const Json& asset = json.at("asset");
-  if (asset.contains("extras") && asset["extras"].contains("openEdges")) {
-    out.open_edges = asset["extras"]["openEdges"].get<std::vector<std::uint64_t>>();
+  const Json extras = json.at("asset").value("extras", Json::object());
+  out.open_edges = extras.value("openEdges", out.open_edges);
+  if (extras.contains("origin")) {
+    const Json& o = extras.at("origin");
+    if (o.size() != 3) throw Fault{"an origin has 3 numbers"};
+    out.origin = {finite(o[0]), finite(o[1]), finite(o[2])};
   }
   return out;
 }
@@ -124,6 +130,18 @@ Result<Tileset> read_tileset(const std::filesystem::path& file) {
   } catch (const Json::exception& fault) {
     return Error{ErrorCode::BadData, std::string{"it is no tileset: "} + fault.what(), file.string()};
   }
+}
+
+bool is_tileset_file(const std::filesystem::path& file) {
+  if (file.extension() != ".json") return false;
+  const auto input = Input::open(file, most_json_bytes);
+  if (!input) return false;
+  // A tileset's first keys may come in any order; the error of some tile comes early in each.
+  constexpr std::size_t head_bytes = 1U << 16;
+  Bytes head(std::min<std::uint64_t>(head_bytes, input->size()));
+  head.resize(input->read(0, head));
+  const std::string_view text{reinterpret_cast<const char*>(head.data()), head.size()};
+  return text.find("\"geometricError\"") != std::string_view::npos;
 }
 
 Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures) {

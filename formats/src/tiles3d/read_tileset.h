@@ -25,7 +25,7 @@ struct Tileset {
   std::vector<TilesetTile> tiles;
   std::uint32_t level_count = 0;
   std::vector<std::uint64_t> open_edges;  // per level, as the writer counted them; empty if it did not
-  glm::dvec3 origin{0.0};                 // of the root's transform
+  glm::dvec3 origin{0.0};  // in the source's coordinates if the writer told it, else the root's transform
 };
 
 // Boxes, spheres (as the box around them). Errors: BadData for what is missing, out of range, or leaves the folder.

@@ -59,6 +59,7 @@ Status write_tileset_json(const OutcropPyramid& pyramid, const std::filesystem::
   const double whole_m = std::max(top.bounds.diagonal_m(), 2.0 * top.error_m);
   Json asset{{"version", version == TilesVersion::V1_1 ? "1.1" : "1.0"}, {"generator", "Lodestone"}};
   if (!pyramid.crs().empty()) asset["extras"]["crs"] = pyramid.crs();
+  asset["extras"]["origin"] = {pyramid.origin().x, pyramid.origin().y, pyramid.origin().z};
   // For check_tileset(): edges that may be open.
   for (const OutcropLevel& level : pyramid.levels()) asset["extras"]["openEdges"].push_back(level.open_edges);
   const Json tileset{

@@ -103,7 +103,7 @@ struct TexturePiece {
 
 struct TileTexture {
   std::uint32_t level = 0;
-  std::uint32_t width = 0, height = 0;  ///< multiples of 4
+  std::uint32_t width = 0, height = 0;  ///< multiples of 8
   std::vector<TexturePiece> pieces;
 };
 

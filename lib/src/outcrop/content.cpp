@@ -14,8 +14,7 @@
 namespace lodestone {
 namespace {
 
-constexpr int gutter_alone_px = 2;  // around the only piece: the rest of the image lies there
-constexpr int gutter_px = 8;        // between pieces: clean down to mip level 3
+constexpr int gutter_px = 8;  // around each piece: clean down to mip level 3
 constexpr std::uint32_t most_parts = 256;
 constexpr double merge_waste = 1.1;  // rectangles join if that makes them no larger than so many times their sum
 
@@ -113,28 +112,20 @@ void pack(const std::vector<Rect>& rects, TileTexture& texture) {
     shelf = std::max(shelf, piece.height);
     texture.width = std::max(texture.width, x);
   }
-  texture.width = rounded_up(texture.width, 4);
-  texture.height = rounded_up(y + shelf, 4);
+  texture.width = rounded_up(texture.width, 8);
+  texture.height = rounded_up(y + shelf, 8);
 }
 
-// Makes room for gutters and sizes that block compression likes.
+// Makes room for the gutter and puts the corners on a grid, so that the first mip levels of the tile are those of the
+// image, pixel by pixel. The only piece need not reach beyond the image.
 void add_gutter(Rect& rect, bool alone, const glm::uvec2& image) {
-  const int gutter = alone ? gutter_alone_px : gutter_px;
   const auto stretch = [&](std::int32_t& low, std::int32_t& high, std::uint32_t size) {
-    low -= gutter;
-    high += gutter;
-    const auto end = static_cast<std::int32_t>(size);
-    if (alone) {
-      low = std::clamp(low, 0, end - 1);
-      high = std::clamp(high, low + 1, end);
-    }
-    const std::uint32_t step = alone ? 4 : gutter_px;
-    high = low + static_cast<std::int32_t>(rounded_up(static_cast<std::uint32_t>(high - low), step));
-    if (alone && high > end) {  // rather more of the image than repeated border
-      const std::int32_t back = std::min(high - end, low);
-      low -= back;
-      high -= back;
-    }
+    low = static_cast<std::int32_t>(std::floor((low - gutter_px) / static_cast<double>(gutter_px))) * gutter_px;
+    high = static_cast<std::int32_t>(std::ceil((high + gutter_px) / static_cast<double>(gutter_px))) * gutter_px;
+    if (!alone) return;
+    const auto end = static_cast<std::int32_t>(rounded_up(size, gutter_px));
+    low = std::clamp(low, 0, end - gutter_px);
+    high = std::clamp(high, low + gutter_px, end);
   };
   stretch(rect.x0, rect.x1, image.x);
   stretch(rect.y0, rect.y1, image.y);

@@ -119,13 +119,15 @@ Status measure(const Mesh& mesh, const std::vector<FaceId>& faces, const glm::uv
     area_m2 += 0.5 * glm::length(area_vector(mesh, f));
   }
   segment.texel_m = area_px > 0.0 ? std::sqrt(area_m2 / area_px) : 0.0;
-  // A pixel more on every side where there is one: that is what bilinear filters reach for.
+  // A pixel more on every side where there is one, which is what bilinear filters reach for, and out to the grid of the
+  // third mip level, so that mip levels of a part are parts of the mip levels.
+  constexpr double grid = 8.0;
   const auto whole_begin = [](double low, std::uint32_t size) {
-    const double first = std::floor(low - 0.5 - 1e-3);
+    const double first = std::floor((low - 0.5 - 1e-3) / grid) * grid;
     return static_cast<std::int32_t>(low >= -1e-3 * size ? std::max(first, 0.0) : first);
   };
   const auto whole_end = [](double high, std::uint32_t size) {
-    const double last = std::ceil(high + 0.5 + 1e-3);
+    const double last = std::ceil((high + 0.5 + 1e-3) / grid) * grid;
     return static_cast<std::int32_t>(high <= size * (1.0 + 1e-3) ? std::min<double>(last, size) : last);
   };
   segment.left_px = whole_begin(used.low.x, image_px.x);

@@ -96,8 +96,8 @@ TEST_CASE("A tile's texture holds the source's pixels at level 0, and at any lev
     for (const std::uint32_t s : tile.segments) used.push_back(&images[s]);
     const TileContent content = pyramid->content(i);
     const Image texture = compose(content.texture, used);
-    CHECK(texture.width % 4 == 0);
-    CHECK(texture.height % 4 == 0);
+    CHECK(texture.width % 8 == 0);
+    CHECK(texture.height % 8 == 0);
     for (const TexturePiece& piece : content.texture.pieces) {
       const OutcropSegment& s = pyramid->segments()[piece.segment];
       const Image& whole = images[piece.segment].image();

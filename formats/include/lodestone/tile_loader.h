@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+/// \file
+/// Tilesets at run time: what to draw from where the camera is, loaded beside the frame loop.
+///
+///     auto pyramid = lodestone::TilePyramid::open("cliff_tiles/tileset.json");
+///     lodestone::TilePager pager{*pyramid};
+///     while (running) {
+///       for (lodestone::NodeId tile : pager.update(view, dt_s)) draw(tile, *pager.content(tile));
+///     }
+///
+/// Selection is select_cut() of lod_graph.h, so a tile is replaced by its children when its error covers more than so
+/// many pixels, and never before all of them are there: nothing is ever missing. (The paper that the pyramids follow
+/// compares the projected size of a tile with that of its texture, equation 9. That is the same test where a tile's
+/// error is the size of its texels, as in tilesets of ours; the error also knows the geometry.)
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <lodestone/formats.h>
+#include <lodestone/lod_graph.h>
+#include <lodestone/mesh.h>
+#include <lodestone/result.h>
+#include <lodestone/view.h>
+
+namespace lodestone {
+
+/// An opened tileset.json; immutable, shared by threads. Understands boxes and spheres, glb and b3dm, one content per
+/// tile, refinement REPLACE.
+class TilePyramid {
+ public:
+  /// Reads the JSON only. Errors: NotFound, Unreadable, BadData with what is missing.
+  [[nodiscard]] static Result<std::shared_ptr<const TilePyramid>> open(const std::filesystem::path& tileset_json);
+  ~TilePyramid();
+  TilePyramid(const TilePyramid&) = delete;
+  TilePyramid& operator=(const TilePyramid&) = delete;
+
+  /// One node per tile with content; errors are metres (geometricError / 16). The frame is that of the root's content:
+  /// world coordinates less origin(), for tilesets of ours in the source's coordinate system.
+  [[nodiscard]] const LodGraph& graph() const noexcept;
+  [[nodiscard]] const glm::dvec3& origin() const noexcept;
+  [[nodiscard]] const Box& bounds() const noexcept;
+  [[nodiscard]] const std::string& name(NodeId tile) const noexcept;
+
+  /// Reads a tile. The mesh's own origin is zero or small; positions are in the frame of graph().
+  [[nodiscard]] Result<Mesh> load(NodeId tile, LoadTextures textures = LoadTextures::Decoded) const;
+
+ private:
+  TilePyramid();
+  struct Content;
+  std::unique_ptr<Content> content_;
+};
+
+struct PagerOptions {
+  unsigned workers = 2;
+  /// Vertices, indices and decoded pixels held; tiles not drawn for longest go first. Those drawn, and the coarser ones
+  /// above them, stay even if they exceed it.
+  std::uint64_t budget_bytes = 512ULL << 20;
+  double error_px = 1.0;
+  /// Tiles are also asked for that the camera will need after so many seconds if it goes on as it does.
+  double look_ahead_s = 0.5;
+};
+
+struct PagerStatus {
+  std::uint32_t resident_tiles = 0;
+  std::uint32_t wanted_tiles = 0;  ///< asked for and not there
+  std::uint64_t resident_bytes = 0;
+  std::uint64_t loaded_tiles = 0;     ///< since the beginning, those let go again included
+  std::vector<std::string> failures;  ///< one line per tile that could not be read; what is coarser stands in for it
+};
+
+/// Belongs to one thread, which calls update() once a frame; workers read files. The root is read on construction.
+class TilePager {
+ public:
+  explicit TilePager(std::shared_ptr<const TilePyramid> pyramid, const PagerOptions& options = {});
+  ~TilePager();
+  TilePager(const TilePager&) = delete;
+  TilePager& operator=(const TilePager&) = delete;
+
+  /// What to draw now, every part of the view once. Takes in what workers have read, asks for what is missing, the
+  /// largest error first, lets go of what has not been drawn for longest. Does not wait. Empty only if the root cannot
+  /// be read.
+  [[nodiscard]] std::span<const NodeId> update(const View& view, double dt_s);
+
+  /// The same, but waits until all that this view needs is there (or has failed).
+  [[nodiscard]] std::span<const NodeId> settle(const View& view);
+
+  /// Of a tile that update() has returned; valid until the next update().
+  [[nodiscard]] const Mesh* content(NodeId tile) const;
+  [[nodiscard]] PagerStatus status() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// True if the file looks like a tileset.json.
+[[nodiscard]] bool is_tileset_file(const std::filesystem::path& file);
+
+/// Several tiles as one mesh, each with its own textures, for those who want a picture and no pager.
+[[nodiscard]] Mesh merged(std::span<const Mesh* const> tiles);
+
+}  // namespace lodestone

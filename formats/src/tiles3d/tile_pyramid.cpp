@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/tile_loader.h>
+
+#include <algorithm>
+
+#include "tiles3d/read_tileset.h"
+#include "tiles3d/tileset_json.h"
+
+namespace lodestone {
+
+struct TilePyramid::Content {
+  Tileset tileset;
+  LodGraph graph;
+  std::vector<std::uint32_t> tile_of_node;
+};
+
+TilePyramid::TilePyramid() = default;
+TilePyramid::~TilePyramid() = default;
+
+Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesystem::path& tileset_json) {
+  auto tileset = read_tileset(tileset_json);
+  if (!tileset) return tileset.error();
+  std::vector<GroupDraft> groups;
+  std::vector<NodeDraft> nodes;
+  std::vector<GroupId> group_of(tileset->tiles.size(), none);
+  for (std::uint32_t i = 0; i < tileset->tiles.size(); ++i) {  // parents stand before children
+    const TilesetTile& tile = tileset->tiles[i];
+    if (tile.uri.empty()) {
+      return Error{ErrorCode::Unsupported, "a tile without content cannot be shown", tileset_json.string()};
+    }
+    const Sphere sphere{tile.bounds.center(), 0.5 * tile.bounds.diagonal_m()};
+    if (!tile.children.empty()) {
+      group_of[i] = static_cast<GroupId>(groups.size());
+      groups.push_back({sphere, std::max(0.0, tile.geometric_error) / client_error_px});
+    }
+    nodes.push_back(
+        {.bounds = sphere, .group = tile.parent == none ? none : group_of[tile.parent], .maker = group_of[i]});
+  }
+  auto assembled = assemble_graph(groups, nodes);
+  if (!assembled) return Error{assembled.error().code, assembled.error().message, tileset_json.string()};
+  std::shared_ptr<TilePyramid> out{new TilePyramid};
+  out->content_ = std::make_unique<Content>(
+      Content{std::move(*tileset), std::move(assembled->graph), std::move(assembled->node_draft)});
+  return std::shared_ptr<const TilePyramid>{std::move(out)};
+}
+
+const LodGraph& TilePyramid::graph() const noexcept { return content_->graph; }
+const glm::dvec3& TilePyramid::origin() const noexcept { return content_->tileset.origin; }
+const Box& TilePyramid::bounds() const noexcept { return content_->tileset.tiles.front().bounds; }
+const std::string& TilePyramid::name(NodeId tile) const noexcept {
+  return content_->tileset.tiles[content_->tile_of_node[tile]].uri;
+}
+
+Result<Mesh> TilePyramid::load(NodeId tile, LoadTextures textures) const {
+  auto loaded = read_tile(content_->tileset, content_->tile_of_node[tile], textures);
+  if (!loaded) return loaded.error();
+  return std::move(loaded->mesh);
+}
+
+Mesh merged(std::span<const Mesh* const> tiles) {
+  Mesh out;
+  const auto has = [&](auto member) {
+    return std::any_of(tiles.begin(), tiles.end(), [&](const Mesh* m) { return !(m->vertices.*member).empty(); });
+  };
+  const bool normals =
+      std::all_of(tiles.begin(), tiles.end(), [](const Mesh* m) { return !m->vertices.normals.empty(); });
+  const bool uvs = has(&VertexArrays::uvs);
+  const bool colors = has(&VertexArrays::colors);
+  for (const Mesh* tile : tiles) {
+    const VertexArrays& from = tile->vertices;
+    const std::uint32_t first_vertex = out.vertices.size();
+    const auto first_texture = static_cast<std::uint32_t>(out.textures.size());
+    const auto first_material = static_cast<MaterialId>(out.materials.size());
+    for (const glm::vec3& p : from.positions) out.vertices.positions.push_back(p + glm::vec3{tile->origin});
+    if (normals) out.vertices.normals.insert(out.vertices.normals.end(), from.normals.begin(), from.normals.end());
+    const auto append = [&](bool wanted, auto& to, const auto& values, auto otherwise) {
+      if (!wanted) return;
+      to.insert(to.end(), values.begin(), values.end());
+      to.resize(out.vertices.positions.size(), otherwise);
+    };
+    append(uvs, out.vertices.uvs, from.uvs, glm::vec2{0.0F});
+    append(colors, out.vertices.colors, from.colors, glm::u8vec4{255});
+    for (const Texture& texture : tile->textures) out.textures.push_back(texture);
+    for (Material material : tile->materials) {
+      if (material.texture != none) material.texture += first_texture;
+      out.materials.push_back(std::move(material));
+    }
+    for (const VertexId v : tile->indices) out.indices.push_back(first_vertex + v);
+    for (FaceId f = 0; f < tile->triangle_count(); ++f) {
+      out.face_materials.push_back(first_material + tile->face_material(f));
+    }
+  }
+  return out;
+}
+
+}  // namespace lodestone

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include <lodestone/tile_loader.h>
+#include <lodestone/tileset_writer.h>
+#include <catch2/catch.hpp>
+
+#include "base/rng.h"
+#include "data.h"
+#include "fixture.h"
+
+namespace lodestone::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Written once; tests that damage it take a copy.
+const fs::path& tiles() {
+  static const fs::path folder = [] {
+    fs::path made = scratch_folder("pager_tiles");
+    REQUIRE(write_outcrop(small_cliff(), made, {.pyramid = small_tiles()}));
+    return made;
+  }();
+  return folder;
+}
+
+View from_south(const TilePyramid& pyramid, double radii) {
+  const Box& box = pyramid.bounds();
+  View view;
+  view.eye = box.center() - glm::dvec3{0.0, 0.5 * radii * box.diagonal_m(), 0.0};
+  return view;
+}
+
+std::uint32_t triangles(const TilePager& pager, std::span<const NodeId> drawn) {
+  std::uint32_t sum = 0;
+  for (const NodeId tile : drawn) sum += pager.content(tile)->triangle_count();
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("Nearer by, more is drawn; from very near the source itself, from far the root alone") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  CHECK(validate((*pyramid)->graph()).ok());
+  CHECK((*pyramid)->origin() == small_cliff().origin);
+  TilePager pager{*pyramid};
+  std::uint32_t before = 0;
+  for (const double radii : {2000.0, 40.0, 8.0, 2.5}) {
+    const auto drawn = pager.settle(from_south(**pyramid, radii));
+    const std::uint32_t now = triangles(pager, drawn);
+    CHECK(now >= before);
+    if (radii > 1000.0) CHECK(drawn.size() == 1);
+    before = now;
+  }
+  CHECK(before > 1000);
+  CHECK(pager.status().failures.empty());
+
+  TilePager fine{*pyramid, {.error_px = 1e-6}};
+  CHECK(triangles(fine, fine.settle(from_south(**pyramid, 4.0))) == small_cliff().triangle_count());
+}
+
+TEST_CASE("While tiles are on their way, and whatever the budget, no part of the view is missing or drawn twice") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  TilePager pager{*pyramid, {.workers = 1, .budget_bytes = 300'000, .error_px = 0.5}};
+  Rng rng{3};
+  for (int frame = 0; frame < 200; ++frame) {
+    View view = from_south(**pyramid, 1.0 + 6.0 * rng.unit());
+    view.eye.x += 40.0 * (rng.unit() - 0.5);
+    const auto drawn = pager.update(view, 0.02);
+    REQUIRE(!drawn.empty());
+    std::vector<NodeId> sorted(drawn.begin(), drawn.end());
+    std::sort(sorted.begin(), sorted.end());
+    CHECK(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
+    for (const NodeId tile : drawn) CHECK(pager.content(tile) != nullptr);
+    if (frame % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds{5});
+  }
+  static_cast<void>(pager.settle(from_south(**pyramid, 3000.0)));
+  static_cast<void>(pager.update(from_south(**pyramid, 3000.0), 0.0));
+  CHECK(pager.status().resident_bytes <= 300'000);
+}
+
+TEST_CASE("What cannot be read is told, and what is coarser stands in") {
+  const fs::path folder = scratch_folder("pager_broken");
+  fs::copy(tiles(), folder, fs::copy_options::recursive);
+  fs::remove(folder / "tiles/L0_0.glb");
+  const auto pyramid = TilePyramid::open(folder / "tileset.json");
+  REQUIRE(pyramid);
+  TilePager pager{*pyramid, {.error_px = 1e-6}};
+  const auto drawn = pager.settle(from_south(**pyramid, 4.0));
+  CHECK(pager.status().failures.size() == 1);
+  CHECK(triangles(pager, drawn) < small_cliff().triangle_count());
+  for (const NodeId tile : drawn) CHECK(pager.content(tile) != nullptr);
+
+  CHECK(TilePyramid::open(folder / "tiles/L0_1.glb").error().code == ErrorCode::BadData);
+  CHECK(!is_tileset_file(folder / "build.json"));
+  CHECK(is_tileset_file(folder / "tileset.json"));
+}
+
+TEST_CASE("Tiles merge into one mesh with their own textures") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  TilePager pager{*pyramid, {.error_px = 1e-6}};
+  std::vector<const Mesh*> all;
+  for (const NodeId tile : pager.settle(from_south(**pyramid, 4.0))) all.push_back(pager.content(tile));
+  const Mesh whole = merged(all);
+  CHECK(validate(whole).ok());
+  CHECK(whole.triangle_count() == small_cliff().triangle_count());
+  CHECK(whole.textures.size() == all.size());
+  CHECK(inspect(whole).boundary_edges == inspect(small_cliff()).boundary_edges);
+}
+
+}  // namespace lodestone::test
