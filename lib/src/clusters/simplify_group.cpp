@@ -86,6 +86,8 @@ class GroupSink final : public collapse::Sink {
 };
 
 class Job {
+  using Edges = std::vector<std::uint64_t>;  // the smaller point in the upper half, so that they sort fast
+
  public:
   Job(const Work& work, const Group& group, std::uint32_t failures, collapse::Scruples scruples, const Context& context)
       : work_(work), group_(group), failures_(failures), scruples_(scruples), context_(context) {}
@@ -93,11 +95,11 @@ class Job {
   GroupResult run() {
     gather();
     choose_target();
-    opened_before_ = opened(local_, point_before_, border_before_).size();
+    for (const BorderEdge& e : group_.border) border_edges_.push_back(edge_between(e.low, e.high));
     for (int attempt = 0; attempt < attempts && !context_.cancelled(); ++attempt) {
       simplify();
       name_points();
-      const std::vector<BorderEdge> faults = find_faults();
+      const Edges faults = find_faults();
       if (faults.empty()) break;
       if (attempt + 1 == attempts) result_.cause = "it could not be simplified without opening it";
       lock_around(faults);
@@ -185,9 +187,8 @@ class Job {
     }
   }
 
-  using Edges = std::vector<BorderEdge>;
-  static bool before(const BorderEdge& a, const BorderEdge& b) {
-    return a.low != b.low ? a.low < b.low : a.high < b.high;
+  static std::uint64_t edge_between(std::uint32_t p, std::uint32_t q) {
+    return std::uint64_t{std::min(p, q)} << 32U | std::max(p, q);
   }
 
   // The edges of faces between local vertices, by their points, ascending.
@@ -195,33 +196,31 @@ class Job {
     Edges edges;
     edges.reserve(3 * faces.size());
     for (const LiveFace& f : faces) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t p = point[f.vertex[k]];
-        const std::uint32_t q = point[f.vertex[(k + 1) % 3]];
-        edges.push_back({std::min(p, q), std::max(p, q)});
-      }
+      for (std::size_t k = 0; k < 3; ++k)
+        edges.push_back(edge_between(point[f.vertex[k]], point[f.vertex[(k + 1) % 3]]));
     }
-    std::sort(edges.begin(), edges.end(), before);
+    std::sort(edges.begin(), edges.end());
     return edges;
   }
 
   // Edges of one face that are neither on the true border nor on that of the group. `border` is by local vertex.
-  [[nodiscard]] Edges opened(const std::vector<LiveFace>& faces, const std::vector<std::uint32_t>& point,
+  [[nodiscard]] Edges opened(const Edges& edges, const std::vector<std::uint32_t>& point,
                              const std::vector<std::uint8_t>& border) const {
     std::vector<std::uint32_t> on_border;
     for (std::size_t v = 0; v < point.size(); ++v) {
       if (border[v] != 0) on_border.push_back(point[v]);
     }
     std::sort(on_border.begin(), on_border.end());
-    const auto is_border = [&](std::uint32_t p) { return std::binary_search(on_border.begin(), on_border.end(), p); };
+    const auto is_border = [&](std::uint64_t p) {
+      return std::binary_search(on_border.begin(), on_border.end(), static_cast<std::uint32_t>(p));
+    };
     Edges open;
-    const Edges edges = edges_of(faces, point);
     for (std::size_t i = 0; i < edges.size();) {
       std::size_t end = i + 1;
       while (end < edges.size() && edges[end] == edges[i]) ++end;
-      const BorderEdge& e = edges[i];
-      if (end == i + 1 && !(is_border(e.low) && is_border(e.high)) &&
-          !std::binary_search(group_.border.begin(), group_.border.end(), e, before)) {
+      const std::uint64_t e = edges[i];
+      if (end == i + 1 && !std::binary_search(border_edges_.begin(), border_edges_.end(), e) &&
+          !(is_border(e >> 32U) && is_border(e & none))) {
         open.push_back(e);
       }
       i = end;
@@ -235,19 +234,24 @@ class Job {
     for (std::size_t v = 0; v < border.size(); ++v) {
       if (border_before_[v] != 0) border[v] = border[result_.survivor[v]] = 1;
     }
-    Edges faults = opened(result_.faces, result_.point, border);
-    if (faults.size() <= opened_before_) faults.clear();
     const Edges edges = edges_of(result_.faces, result_.point);
-    for (const BorderEdge& e : group_.border) {
-      if (!std::binary_search(edges.begin(), edges.end(), e, before)) faults.push_back(e);
+    Edges faults = opened(edges, result_.point, border);
+    if (!faults.empty() &&
+        faults.size() <= opened(edges_of(local_, point_before_), point_before_, border_before_).size()) {
+      faults.clear();
     }
+    std::set_difference(border_edges_.begin(), border_edges_.end(), edges.begin(), edges.end(),
+                        std::back_inserter(faults));
     return faults;
   }
 
   // Locks the points of the edges and all that they have faces with.
   void lock_around(const Edges& faults) {
     std::vector<std::uint32_t> ends;
-    for (const BorderEdge& e : faults) ends.insert(ends.end(), {e.low, e.high});
+    for (const std::uint64_t e : faults) {
+      ends.push_back(static_cast<std::uint32_t>(e >> 32U));
+      ends.push_back(static_cast<std::uint32_t>(e));
+    }
     std::sort(ends.begin(), ends.end());
     std::vector<std::uint32_t> points;
     for (const LiveFace& f : local_) {
@@ -419,7 +423,7 @@ class Job {
   std::vector<VertexId> indices_;            // the same as one list
   std::vector<std::uint32_t> point_before_;  // per local vertex
   std::vector<std::uint8_t> border_before_;  // per local vertex
-  std::size_t opened_before_ = 0;
+  Edges border_edges_;                       // ascending
   VertexArrays start_;
   Mesh mesh_;
   EdgeCollapseOptions options_;
