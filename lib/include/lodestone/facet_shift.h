@@ -49,6 +49,10 @@ struct SurfaceTolerance {
 
 struct FacetShiftOptions {
   SurfaceTolerance tolerance;
+  /// T-junctions are closed first: a triangle whose open side passes by a point of its neighbour within this distance
+  /// is cut there. Surveyed models do not share the points of such sides, and walls in pieces coarsen badly. 0 leaves
+  /// the source as it is; metres.
+  double t_junction_tolerance_m = 0.001;
   /// Stop at so many triangles; 0 goes on until nothing is left to do.
   std::uint32_t target_triangles = 0;
   /// Stop before the error exceeds this; metres.
@@ -58,11 +62,14 @@ struct FacetShiftOptions {
 /// What was done, in records, and what was left.
 struct FacetShiftReport {
   std::uint32_t surfaces = 0, walls = 0, roofs = 0, openings = 0;
-  std::uint32_t shifts = 0;             ///< planes that moved
-  std::uint32_t parts_vanished = 0;     ///< detached parts that sank into what they hang on
-  std::uint32_t points_merged = 0;      ///< corner points that slid within their planes onto a neighbour
-  std::uint32_t tilting_collapses = 0;  ///< the same where some face had to leave its direction
-  std::string sentence;                 ///< what holds the model above the target, empty if it was reached
+  std::uint32_t closed_t_junctions = 0;  ///< points put into sides of neighbours
+  std::uint32_t shifts = 0;              ///< planes that moved
+  std::uint32_t openings_flattened = 0;  ///< holes of a wall whose window came forward into the wall's plane
+  std::uint32_t openings_filled = 0;     ///< flush windows and holes that the wall closed over
+  std::uint32_t parts_vanished = 0;      ///< detached parts that sank into what they hang on
+  std::uint32_t points_merged = 0;       ///< corner points that slid within their planes onto a neighbour
+  std::uint32_t tilting_collapses = 0;   ///< the same where some face had to leave its direction
+  std::string sentence;                  ///< what holds the model above the target, empty if it was reached
 };
 
 struct FacetShiftResult {
@@ -70,7 +77,8 @@ struct FacetShiftResult {
   FacetShiftReport report;
 };
 
-/// Builds the stack from the source (finest level, bit for bit) down to the target. Levels are named: "lod3", "lod2"
+/// Builds the stack from the source (finest level, bit for bit but for the cuts at T-junctions, see
+/// compare_with_source()) down to the target. Levels are named: "lod3", "lod2"
 /// and "lod1" are the coarsest within 0.5, 2 and 5 m of the source (the positional accuracy that CityGML 2.0 asks of
 /// these), "block" is the base. One thread; the same bytes always. Time about 20 us per source triangle up to some
 /// ten thousand, more beyond; memory about 400 bytes per source triangle. Errors: BadData from validate(mesh),

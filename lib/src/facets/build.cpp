@@ -9,8 +9,11 @@
 #include <array>
 #include <queue>
 
+#include <lodestone/repair.h>
+
 #include "facets/facet_mesh.h"
 #include "facets/judge.h"
+#include "facets/openings.h"
 #include "facets/parts.h"
 #include "facets/plan.h"
 #include "progressive/values.h"
@@ -60,6 +63,8 @@ class Builder {
   [[nodiscard]] std::uint64_t version_of(std::uint32_t surface) const;
   [[nodiscard]] double key_of_shift(std::uint32_t surface, Direction direction);
   void vanish_parts(double price);
+  bool close_openings(double price);
+  bool do_job(const OpeningJob& job, double price);
   void offer_around(std::uint32_t point);
   bool offer_later();
   [[nodiscard]] bool done() const { return mesh_.live_faces <= options_.target_triangles || context_.cancelled(); }
@@ -231,6 +236,32 @@ void Builder::vanish_parts(double price) {
   }
 }
 
+bool Builder::do_job(const OpeningJob& job, double price) {
+  if (job.key() > price || job.error_m > options_.max_error_m) return false;
+  apply(mesh_, job.patch, job.error_m, log_);
+  for (const Redrawn& r : job.patch.redrawn) {
+    for (const std::uint32_t p : r.point) later_.push_back(p);
+  }
+  return true;
+}
+
+bool Builder::close_openings(double price) {
+  bool any = false;
+  const std::vector<Opening> openings = find_openings(mesh_);
+  const Niches niches{mesh_};
+  for (const Opening& opening : openings) {
+    if (done()) break;
+    if (const auto job = niches.flatten(opening); job && do_job(*job, price)) {
+      ++report_.openings_flattened;
+      any = true;
+    } else if (const auto closing = fill(mesh_, opening); closing && do_job(*closing, price)) {
+      ++report_.openings_filled;
+      any = true;
+    }
+  }
+  return any;
+}
+
 progressive::EditLog Builder::run(FacetShiftReport& report) {
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) {
     ++report_.surfaces;
@@ -247,6 +278,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   const double last_price = last_share * area * diagonal * diagonal;
   for (double price = first_price; price <= last_price && !done(); price *= price_step) {
     bool any = true;
+    // Before points slide: a window goes whole, or its outline frays.
+    while (!done() && close_openings(price)) continue;
     for (std::uint32_t round = 0; round < rounds_per_price && any && !done(); ++round) {
       slide_points(price);
       any = shift_planes(price);
@@ -258,6 +291,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   if (mesh_.live_faces > options_.target_triangles && options_.target_triangles != 0) {
     report_.sentence = "nothing more can go without tearing the block";
   }
+  report_.closed_t_junctions = report.closed_t_junctions;
   report = report_;
   return std::move(log_);
 }
@@ -280,10 +314,15 @@ Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShift
                                               const Context& context) {
   if (Status status = validate(mesh); !status.ok()) return status.error();
   FacetShiftResult result;
-  facets::Builder builder{mesh, options, context};
+  Mesh source = mesh;
+  result.report.closed_t_junctions = repair(source, {.remove_degenerate = false,
+                                                     .remove_duplicates = false,
+                                                     .t_junction_tolerance_m = options.t_junction_tolerance_m})
+                                         .closed_t_junctions;
+  facets::Builder builder{source, options, context};
   progressive::EditLog log = builder.run(result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
-  ModelData data = progressive::record(mesh, std::move(log), "facet-shift");
+  ModelData data = progressive::record(source, std::move(log), "facet-shift");
   facets::name_levels(data);
   auto model = ProgressiveModel::from_data(std::move(data));
   if (!model.ok()) return model.error();

@@ -23,19 +23,6 @@ struct Heir {
   double weight = -1.0;  // area of the face that uv was taken from
 };
 
-// The uv that the plane of face f has at `to`, by its affine map.
-glm::vec2 extrapolate_uv(const FacetMesh& mesh, const Face& f, const glm::dvec3& to) {
-  const glm::dvec3 a = mesh.at(f.point[0]);
-  const glm::dvec3 ab = mesh.at(f.point[1]) - a;
-  const glm::dvec3 ac = mesh.at(f.point[2]) - a;
-  const glm::dvec3 n = glm::cross(ab, ac);
-  const double n2 = glm::dot(n, n);
-  const double s = glm::dot(glm::cross(to - a, ac), n) / n2;
-  const double t = glm::dot(glm::cross(ab, to - a), n) / n2;
-  const auto uv = [&](std::size_t k) { return glm::dvec2{mesh.values.uvs[f.vertex[k]]}; };
-  return glm::vec2{uv(0) + s * (uv(1) - uv(0)) + t * (uv(2) - uv(0))};
-}
-
 bool same_values(const VertexArrays& values, const Heir& heir, VertexId b) {
   if (!values.uvs.empty() && glm::length(values.uvs[b] - heir.uv) > same_uv) return false;
   if (!values.normals.empty() && glm::dot(values.normals[b], values.normals[heir.vertex]) < same_normal_cosine) {
@@ -246,6 +233,24 @@ class Editor {
 };
 
 }  // namespace
+
+glm::vec2 extrapolate_uv(const FacetMesh& mesh, const Face& f, const glm::dvec3& to) {
+  const glm::dvec3 a = mesh.at(f.point[0]);
+  const glm::dvec3 ab = mesh.at(f.point[1]) - a;
+  const glm::dvec3 ac = mesh.at(f.point[2]) - a;
+  const glm::dvec3 n = glm::cross(ab, ac);
+  const double n2 = glm::dot(n, n);
+  const double s = glm::dot(glm::cross(to - a, ac), n) / n2;
+  const double t = glm::dot(glm::cross(ab, to - a), n) / n2;
+  const auto uv = [&](std::size_t k) { return glm::dvec2{mesh.values.uvs[f.vertex[k]]}; };
+  return glm::vec2{uv(0) + s * (uv(1) - uv(0)) + t * (uv(2) - uv(0))};
+}
+
+bool same_looks(const VertexArrays& values, VertexId a, VertexId b) {
+  if (!values.uvs.empty() && glm::length(values.uvs[b] - values.uvs[a]) > same_uv) return false;
+  if (!values.normals.empty() && glm::dot(values.normals[b], values.normals[a]) < same_normal_cosine) return false;
+  return values.colors.empty() || values.colors[b] == values.colors[a];
+}
 
 double height_m(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const double longest2 = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});

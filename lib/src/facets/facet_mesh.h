@@ -86,6 +86,12 @@ inline constexpr double line_height_m = 1e-4;
 
 [[nodiscard]] double height_m(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
+// The uv that the plane of face f has at `to`, by its affine map.
+[[nodiscard]] glm::vec2 extrapolate_uv(const FacetMesh& mesh, const Face& f, const glm::dvec3& to);
+
+// Two vertices of one place look alike.
+[[nodiscard]] bool same_looks(const VertexArrays& values, VertexId a, VertexId b);
+
 // Does the moves and logs them as one record. Faces between points that met go; of two that come to lie on each other
 // and turn the same way one
 // goes. Vertices keep the texture of the plane they lie in.

@@ -12,12 +12,14 @@ namespace {
 constexpr double sliver_m = 5e-4;        // a flatter face has no direction worth keeping
 constexpr double tilt_sine = 0.0075;     // 0.43 degrees are no tilt
 constexpr double detail_area_m2 = 0.25;  // planes smaller than this may tilt at a low price
-constexpr double detail_arm_m = 0.3;     // a tilt counts like so much distance times its sine
-constexpr double plane_arm_m = 3.0;
+constexpr double detail_arm_m = 0.17;    // a tilt counts like so much distance times its sine
+constexpr double plane_arm_m = 6.0;
 constexpr double outline_weight = 0.2;  // of a material's outline, beside that of a hole
-constexpr double growth_weight = 4.0;   // where a hole or the rarer material grows: windows shrink, walls do not
-constexpr double side_weight = 0.6;     // of a face that shrinks to nothing: its mean squared way over the largest
+constexpr double growth_weight = 3.0;   // where a hole or the rarer material grows: windows shrink, walls do not
+constexpr double side_weight = 0.8;     // of a face that shrinks to nothing: its mean squared way over the largest
+constexpr double drift_weight = 3.0;
 constexpr double flip_cosine = 0.2;
+constexpr double one_side_cosine = 0.95;
 
 // The integral of the squared distance over a triangle whose corners are so far from its old plane, over its area.
 double mean_square(const std::array<double, 3>& d) {
@@ -43,6 +45,11 @@ bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Ver
     verdict.error_m = std::max(verdict.error_m, std::abs(distance[k]));
   }
   verdict.cost += 0.5 * length * mean_square(distance);
+  // What strayed before strays further: (a + b)^2 is more than a^2 + b^2.
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!moved.moves(p[k])) continue;
+    verdict.cost += drift_weight * 0.5 * length * std::abs(distance[k]) * double{mesh.deviation_m[p[k]]} / 3.0;
+  }
   const double sine = glm::length(glm::cross(face.normal, after)) / std::max(length, 1e-30);
   if (sine > tilt_sine && height > sliver_m) {
     verdict.tilts = true;
@@ -59,22 +66,37 @@ struct Spoke {
   std::uint32_t faces = 0;
   MaterialId material = none;
   bool mixed = false;
+  bool border = true;    // all faces lie on one side of it: one face, or sheets that lie on each other
+  glm::dvec3 side{0.0};  // from the edge into the first face, unit
 };
+
+glm::dvec3 side_of(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& apex) {
+  const glm::dvec3 along = to - from;
+  const double length2 = glm::dot(along, along);
+  const glm::dvec3 side = apex - from - along * (length2 > 0.0 ? glm::dot(apex - from, along) / length2 : 0.0);
+  const double length = glm::length(side);
+  return length > line_height_m ? side / length : glm::dvec3{0.0};
+}
 
 void find_spokes(const FacetMesh& mesh, std::uint32_t u, std::vector<Spoke>& spokes) {
   spokes.clear();
   for (const FaceId f : mesh.faces_of[u]) {
     const MaterialId material = mesh.source->face_material(f);
-    for (const std::uint32_t p : mesh.faces[f].point) {
-      if (p != u) spokes.push_back({p, 1, material, false});
-    }
+    const auto& p = mesh.faces[f].point;
+    const std::size_t k = p[0] == u ? 0 : p[1] == u ? 1 : 2;
+    const std::uint32_t a = p[k == 2 ? 0 : k + 1];
+    const std::uint32_t b = p[k == 0 ? 2 : k - 1];
+    spokes.push_back({a, 1, material, false, true, side_of(mesh.at(u), mesh.at(a), mesh.at(b))});
+    spokes.push_back({b, 1, material, false, true, side_of(mesh.at(u), mesh.at(b), mesh.at(a))});
   }
   std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) { return a.to < b.to; });
   std::size_t end = 0;
   for (std::size_t i = 0; i < spokes.size(); ++i) {
     if (end > 0 && spokes[end - 1].to == spokes[i].to) {
       ++spokes[end - 1].faces;
-      spokes[end - 1].mixed = spokes[end - 1].mixed || spokes[end - 1].material != spokes[i].material;
+      Spoke& spoke = spokes[end - 1];
+      spoke.mixed = spoke.mixed || spoke.material != spokes[i].material;
+      spoke.border = spoke.border && glm::dot(spoke.side, spokes[i].side) > one_side_cosine;
     } else {
       spokes[end++] = spokes[i];
     }
@@ -133,30 +155,46 @@ void judge_lines(const FacetMesh& mesh, const Moved& moved, const std::vector<Sp
                  std::uint32_t v, Verdict& verdict) {
   const glm::dvec3 from = mesh.at(u);
   const glm::dvec3 to = mesh.at(v);
-  double u_to_new = std::numeric_limits<double>::infinity();
   double v_to_old = std::numeric_limits<double>::infinity();
-  double swept = 0.0;
   bool any = false;
   bool border = false;
   for (const Spoke& s : spokes) {
-    if (s.faces != 1 && !s.mixed) continue;
+    if (!s.border && !s.mixed) continue;
     any = true;
-    border = border || s.faces == 1;
-    if (s.to == v) {
-      v_to_old = 0.0;
-      continue;
-    }
-    const glm::dvec3 w = mesh.at(s.to);
-    u_to_new = std::min(u_to_new, segment_distance(from, w, to));
-    v_to_old = std::min(v_to_old, segment_distance(to, w, from));
-    swept += 0.5 * glm::length(glm::cross(w - from, to - from));
+    border = border || s.border;
+    v_to_old = std::min(v_to_old, s.to == v ? 0.0 : segment_distance(to, mesh.at(s.to), from));
   }
   if (!any) return;
-  if (!std::isfinite(u_to_new)) u_to_new = glm::length(to - from);
-  const double e = std::max(u_to_new, v_to_old);
-  verdict.error_m = std::max(verdict.error_m, e);
-  const double weight = goes_the_wrong_way(mesh, moved, border) ? growth_weight : border ? 1.0 : outline_weight;
-  verdict.cost += weight * swept * e * e / 3.0;
+  verdict.error_m = std::max(verdict.error_m, v_to_old);
+  double swept = 0.0;
+  bool ends = true;
+  for (const Spoke& s : spokes) {
+    if ((!s.border && !s.mixed) || s.to == v) continue;
+    ends = false;
+    const glm::dvec3 w = mesh.at(s.to);
+    const double away = std::max(segment_distance(from, w, to), v_to_old);
+    swept += 0.5 * glm::length(glm::cross(w - from, to - from)) * away * away / 3.0;
+    verdict.error_m = std::max(verdict.error_m, away);
+  }
+  // A line that ends here shrinks.
+  if (ends) verdict.error_m = std::max(verdict.error_m, glm::length(to - from));
+  verdict.cost += swept * (goes_the_wrong_way(mesh, moved, border) ? growth_weight : border ? 1.0 : outline_weight);
+}
+
+// A face between u and v goes. Where no other face keeps the line from its third corner to v, all of it is lost.
+void judge_loss(const FacetMesh& mesh, const Face& face, std::uint32_t u, std::uint32_t v, Verdict& verdict) {
+  const auto has = [](const Face& f, std::uint32_t p) { return f.point[0] == p || f.point[1] == p || f.point[2] == p; };
+  const std::uint32_t w = *std::find_if(face.point.begin(), face.point.end(), [&](auto p) { return p != u && p != v; });
+  bool rests = false;  // w stays
+  for (const FaceId f : mesh.faces_of[w]) {
+    const bool at_u = has(mesh.faces[f], u);
+    const bool at_v = has(mesh.faces[f], v);
+    if (at_u != at_v) return;
+    rests = rests || !at_u;
+  }
+  const double away = glm::length(mesh.at(w) - mesh.at(v)) * (rests ? 0.5 : 1.0);
+  verdict.cost += 0.5 * glm::length(mesh.area_vector(face)) * away * away / 3.0;
+  verdict.error_m = std::max(verdict.error_m, away);
 }
 
 void add_deviation(const FacetMesh& mesh, std::span<const Move> moves, Verdict& verdict) {
@@ -175,6 +213,7 @@ Verdict judge_slide(const FacetMesh& mesh, Moved& moved, const Move& move, doubl
     const auto& p = face.point;
     if (p[0] == move.onto || p[1] == move.onto || p[2] == move.onto) {
       ++verdict.faces_gone;
+      judge_loss(mesh, face, move.point, move.onto, verdict);
       continue;
     }
     const double height = height_m(moved.at(p[0]), moved.at(p[1]), moved.at(p[2]));

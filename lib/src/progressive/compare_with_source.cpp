@@ -8,6 +8,7 @@
 #include <lodestone/progressive_model.h>
 
 #include "base/hash.h"
+#include "progressive/pieces.h"
 #include "progressive/values.h"
 
 namespace lodestone {
@@ -89,22 +90,37 @@ class Triangles {
 std::string compare_with_source(const ProgressiveModel& model, const Mesh& source) {
   const Mesh finest = model.extract(model.record_count());
   if (finest.origin != source.origin) return "the origins differ";
-  if (finest.triangle_count() != source.triangle_count()) {
+  if (finest.triangle_count() < source.triangle_count()) {
     return "the finest level has " + std::to_string(finest.triangle_count()) + " triangles, the source " +
            std::to_string(source.triangle_count());
   }
-  if (source.triangle_count() == 0) return {};
+  if (finest.triangle_count() == 0) return {};
   if (progressive::value_words(finest.vertices) != progressive::value_words(source.vertices)) {
     return "the vertex attributes differ";
   }
   if (finest.materials.size() != source.materials.size()) return "the materials differ";
   const Triangles ours{finest};
   const Triangles theirs{source};
-  for (std::size_t i = 0; i < theirs.size(); ++i) {
-    if (ours.hash_at(i) == theirs.hash_at(i) && ours.key(ours.face_at(i)) == theirs.key(theirs.face_at(i))) continue;
-    return theirs.hash_at(i) <= ours.hash_at(i)
-               ? "triangle " + std::to_string(theirs.face_at(i)) + " of the source is not in the finest level"
-               : "triangle " + std::to_string(ours.face_at(i)) + " of the finest level is not in the source";
+  std::vector<FaceId> missing, added;  // in the source only, in the finest level only
+  for (std::size_t i = 0, k = 0; i < theirs.size() || k < ours.size();) {
+    const bool both = i < theirs.size() && k < ours.size();
+    if (both && ours.hash_at(k) == theirs.hash_at(i) && ours.key(ours.face_at(k)) == theirs.key(theirs.face_at(i))) {
+      ++i;
+      ++k;
+    } else if (k == ours.size() || (both && theirs.hash_at(i) <= ours.hash_at(k))) {
+      missing.push_back(theirs.face_at(i++));
+    } else {
+      added.push_back(ours.face_at(k++));
+    }
+  }
+  std::sort(missing.begin(), missing.end());
+  std::sort(added.begin(), added.end());
+  const progressive::Uncovered uncovered = progressive::find_uncovered(source, missing, finest, added);
+  if (uncovered.whole != none) {
+    return "triangle " + std::to_string(uncovered.whole) + " of the source is not in the finest level";
+  }
+  if (uncovered.piece != none) {
+    return "triangle " + std::to_string(uncovered.piece) + " of the finest level is not in the source";
   }
   return {};
 }

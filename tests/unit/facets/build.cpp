@@ -17,7 +17,7 @@ void check_model(const ProgressiveModel& model, const Mesh& source) {
   CHECK(report.exact);
   CHECK(report.monotone);
   CHECK(report.in_use_consistent);
-  CHECK(compare_with_source(model, source).empty());
+  CHECK(compare_with_source(model, source) == "");
 }
 
 // A wall 10 m wide and 6 m high in the plane y = 0, seen from y < 0, with a square of 1 m that lies `depth_m` behind it
@@ -47,7 +47,7 @@ TEST_CASE("a bulge and a depression come into the wall in one record, at the dis
     const auto built = build_by_facet_shift(mesh);
     REQUIRE(built.ok());
     check_model(*built->model, mesh);
-    CHECK(built->report.shifts == 1);
+    CHECK(built->report.shifts + built->report.openings_flattened == 1);
     const Level flat = built->model->level_of_triangles(2);
     const Mesh end = built->model->extract(flat);
     CHECK(end.triangle_count() == 2);

@@ -1,0 +1,540 @@
+// SPDX-License-Identifier: MIT
+// Based on: Li et al. 2019, section 3.2 (the outermost plane of a depression comes to the next one).
+// Differs: real windows are loose boxes that stand in a hole of the wall and share no point with it. So the hole itself
+// is found, and what stands in it comes to the plane of the wall as one pane that is sewn to the hole's corners; a pane
+// that is flush goes whole and the wall closes over it.
+#include "facets/openings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <lodestone/polygon.h>
+
+#include "base/disjoint_sets.h"
+#include "facets/outline.h"
+
+namespace lodestone::facets {
+namespace {
+
+constexpr double parallel_cosine = 0.99985;
+constexpr double facing_cosine = 0.9;
+constexpr double plane_m = 0.003;
+constexpr std::size_t most_corners = 64;
+constexpr double most_depth_m = 1.5;   // behind the wall
+constexpr double most_height_m = 0.4;  // before it
+constexpr double margin_m = 0.1;       // frames may reach so far under the wall
+constexpr double covered = 0.85;       // of the hole, at least
+constexpr double look_weight = 0.2;    // of a window that goes, beside a hole that closes
+
+struct Plane {
+  glm::dvec3 normal;
+  double offset_m;
+  [[nodiscard]] double height(const glm::dvec3& p) const { return glm::dot(normal, p) - offset_m; }
+};
+
+Plane plane_of(const FacetMesh& mesh, const Opening& opening) {
+  const Face& face = mesh.faces[opening.wall];
+  return {face.normal, glm::dot(face.normal, mesh.at(face.point[0]))};
+}
+
+struct Side {
+  std::uint32_t low, high;
+  FaceId face;
+  bool operator<(const Side& b) const {
+    return low != b.low ? low < b.low : high != b.high ? high < b.high : face < b.face;
+  }
+};
+
+// Faces that hang together by edges, in one plane and of one material.
+std::vector<std::vector<FaceId>> find_walls(const FacetMesh& mesh) {
+  std::vector<Side> sides;
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+    if (!mesh.faces[f].live) continue;
+    const auto& p = mesh.faces[f].point;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(p[k], p[k == 2 ? 0 : k + 1]);
+      sides.push_back({low, high, f});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  DisjointSets sets{static_cast<std::uint32_t>(mesh.faces.size())};
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Face& a = mesh.faces[sides[i].face];
+    const double offset = glm::dot(a.normal, mesh.at(a.point[0]));
+    for (std::size_t j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;
+         ++j) {
+      if (mesh.source->face_material(sides[i].face) == mesh.source->face_material(sides[j].face) &&
+          lies_in(mesh, mesh.faces[sides[j].face], a.normal, offset))
+        sets.join(sides[i].face, sides[j].face);
+    }
+  }
+  std::vector<std::vector<FaceId>> walls;
+  std::vector<std::uint32_t> wall_of(mesh.faces.size(), none);
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+    if (!mesh.faces[f].live) continue;
+    std::uint32_t& wall = wall_of[sets.find(f)];
+    if (wall == none) {
+      wall = static_cast<std::uint32_t>(walls.size());
+      walls.emplace_back();
+    }
+    walls[wall].push_back(f);
+  }
+  return walls;
+}
+
+// The loop as a polygon in the plane.
+class Shape {
+ public:
+  Shape(const FacetMesh& mesh, const Opening& opening, const glm::dvec3& normal) {
+    const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0};
+    u_ = glm::normalize(glm::cross(helper, normal));
+    v_ = glm::cross(normal, u_);
+    for (const std::uint32_t p : opening.loop) corners_.push_back(flat(mesh.at(p)));
+  }
+
+  [[nodiscard]] bool contains(const glm::dvec3& at, double margin) const {
+    const glm::dvec2 p = flat(at);
+    bool inside = false;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0, j = corners_.size() - 1; i < corners_.size(); j = i++) {
+      const glm::dvec2 a = corners_[i];
+      const glm::dvec2 b = corners_[j];
+      if ((a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
+      const double length2 = glm::dot(b - a, b - a);
+      const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, b - a) / length2, 0.0, 1.0) : 0.0;
+      nearest = std::min(nearest, glm::length(p - a - t * (b - a)));
+    }
+    return inside || nearest < margin;
+  }
+
+ private:
+  [[nodiscard]] glm::dvec2 flat(const glm::dvec3& p) const { return {glm::dot(u_, p), glm::dot(v_, p)}; }
+  glm::dvec3 u_, v_;
+  std::vector<glm::dvec2> corners_;
+};
+
+double mean_square(double a, double b, double c) { return (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0; }
+
+double area(const FacetMesh& mesh, FaceId f) { return 0.5 * glm::length(mesh.area_vector(mesh.faces[f])); }
+
+double most_deviation(const FacetMesh& mesh, const std::vector<FaceId>& faces) {
+  double most = 0.0;
+  for (const FaceId f : faces) {
+    for (const std::uint32_t p : mesh.faces[f].point) most = std::max(most, double{mesh.deviation_m[p]});
+  }
+  return most;
+}
+
+bool contains(const std::vector<FaceId>& sorted, FaceId f) {
+  return std::binary_search(sorted.begin(), sorted.end(), f);
+}
+
+bool has_edge(const Face& face, std::uint32_t a, std::uint32_t b) {
+  const auto& p = face.point;
+  return (p[0] == a && p[1] == b) || (p[1] == a && p[2] == b) || (p[2] == a && p[0] == b);
+}
+
+bool has_point(const Face& face, std::uint32_t a) {
+  return face.point[0] == a || face.point[1] == a || face.point[2] == a;
+}
+
+bool is_side(const Opening& opening, std::uint32_t a, std::uint32_t b) {
+  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+    if (opening.loop[i] == a && opening.loop[(i + 1) % opening.loop.size()] == b) return true;
+  }
+  return false;
+}
+
+// Whether the faces run between the corners of the hole already.
+bool is_sewn(const FacetMesh& mesh, const Opening& opening, const std::vector<FaceId>& faces) {
+  return faces.size() + 2 == opening.loop.size() && std::all_of(faces.begin(), faces.end(), [&](FaceId f) {
+           const auto& p = mesh.faces[f].point;
+           return std::all_of(p.begin(), p.end(), [&](std::uint32_t q) {
+             return std::find(opening.loop.begin(), opening.loop.end(), q) != opening.loop.end();
+           });
+         });
+}
+
+// Triangles between the points, the first ring around the others.
+std::vector<std::array<std::uint32_t, 3>> triangulate(const FacetMesh& mesh,
+                                                      const std::vector<std::vector<std::uint32_t>>& rings) {
+  std::vector<glm::dvec3> places;
+  std::vector<std::uint32_t> ids, ends;
+  for (const auto& ring : rings) {
+    for (const std::uint32_t p : ring) {
+      places.push_back(mesh.at(p));
+      ids.push_back(p);
+    }
+    ends.push_back(static_cast<std::uint32_t>(places.size()));
+  }
+  auto triangles = triangulate_polygon(places, ends);
+  for (auto& t : triangles) t = {ids[t[0]], ids[t[1]], ids[t[2]]};
+  return triangles;
+}
+
+// Whether the triangles cover what the rings enclose, all turning with the normal.
+bool covers(const FacetMesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& triangles, const glm::dvec3& normal,
+            double area_m2) {
+  double sum = 0.0;
+  for (const auto& t : triangles) {
+    const double a = 0.5 * glm::dot(glm::cross(mesh.at(t[1]) - mesh.at(t[0]), mesh.at(t[2]) - mesh.at(t[0])), normal);
+    if (a < -1e-9) return false;
+    sum += a;
+  }
+  return std::abs(sum - area_m2) < 1e-4 * area_m2 + 1e-7;
+}
+
+// Draws the pane in the hole.
+class PaneMaker {
+ public:
+  PaneMaker(const FacetMesh& mesh, const Opening& opening, const Plane& plane, const std::vector<FaceId>& content)
+      : mesh_(mesh), opening_(opening), plane_(plane), content_(content) {}
+
+  bool run(Patch& patch) {
+    std::vector<std::uint32_t> ring{opening_.loop.rbegin(), opening_.loop.rend()};
+    const auto triangles = triangulate(mesh_, {ring});
+    if (!covers(mesh_, triangles, plane_.normal, opening_.area_m2)) return false;
+    if (!choose_faces(triangles.size()) || !choose_vertices(patch)) return false;
+    patch.surface = mesh_.faces[opening_.wall].surface;
+    patch.normal = plane_.normal;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      Redrawn r{faces_[i], triangles[i], {}};
+      for (std::size_t k = 0; k < 3; ++k) r.vertex[k] = vertex_of(r.point[k]);
+      patch.redrawn.push_back(r);
+    }
+    std::sort(faces_.begin(), faces_.end());
+    for (const FaceId f : content_) {
+      if (!contains(faces_, f)) patch.gone.push_back(f);
+    }
+    return true;
+  }
+
+ private:
+  // Of the material that shows most, largest first.
+  bool choose_faces(std::size_t count) {
+    std::vector<double> shown(mesh_.source->materials.size(), 0.0);
+    std::vector<std::size_t> faces(shown.size(), 0);
+    for (const FaceId f : content_) {
+      const MaterialId m = mesh_.source->face_material(f);
+      ++faces[m];
+      if (std::abs(glm::dot(mesh_.faces[f].normal, plane_.normal)) > facing_cosine) shown[m] += area(mesh_, f);
+    }
+    std::size_t best = shown.size();
+    for (std::size_t m = 0; m < shown.size(); ++m) {
+      if (faces[m] >= count && shown[m] > 0.0 && (best == shown.size() || shown[m] > shown[best])) best = m;
+    }
+    if (best == shown.size()) return false;
+    for (const FaceId f : content_) {
+      if (mesh_.source->face_material(f) == best) faces_.push_back(f);
+    }
+    std::stable_sort(faces_.begin(), faces_.end(),
+                     [&](FaceId a, FaceId b) { return area(mesh_, a) * facing(a) > area(mesh_, b) * facing(b); });
+    look_ = faces_.front();
+    faces_.resize(count);
+    return true;
+  }
+
+  [[nodiscard]] double facing(FaceId f) const { return std::abs(glm::dot(mesh_.faces[f].normal, plane_.normal)); }
+
+  // One for each corner: the nearest that no face outside uses.
+  bool choose_vertices(Patch& patch) {
+    struct Free {
+      VertexId vertex;
+      std::uint32_t uses;
+      bool of_pane;
+      glm::dvec3 at;
+      bool taken;
+    };
+    std::vector<Free> free;
+    for (const FaceId f : content_) {
+      const Face& face = mesh_.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at =
+            std::find_if(free.begin(), free.end(), [&](const Free& v) { return v.vertex == face.vertex[k]; });
+        const bool of_pane =
+            mesh_.source->face_material(f) == mesh_.source->face_material(look_) && facing(f) > facing_cosine;
+        if (at == free.end()) {
+          free.push_back({face.vertex[k], 1, of_pane, mesh_.at(face.point[k]), false});
+        } else {
+          ++at->uses;
+          at->of_pane = at->of_pane || of_pane;
+        }
+      }
+    }
+    std::erase_if(free, [&](const Free& v) { return v.uses != mesh_.uses[v.vertex]; });
+    if (free.size() < opening_.loop.size()) return false;
+    const Face& look = mesh_.faces[look_];
+    for (const std::uint32_t p : opening_.loop) {
+      Free* best = nullptr;
+      double least = std::numeric_limits<double>::infinity();
+      for (Free& v : free) {
+        if (v.taken) continue;
+        const double away = glm::length(v.at - mesh_.at(p)) + (v.of_pane ? 0.0 : 10.0);
+        if (away < least) {
+          least = away;
+          best = &v;
+        }
+      }
+      best->taken = true;
+      Placed placed{best->vertex, p, {}, {}};
+      if (!mesh_.values.uvs.empty()) placed.uv = extrapolate_uv(mesh_, look, mesh_.at(p));
+      if (!std::isfinite(placed.uv.x) || !std::isfinite(placed.uv.y)) return false;
+      if (!mesh_.values.normals.empty()) placed.normal = glm::vec3{plane_.normal};
+      patch.placed.push_back(placed);
+    }
+    placed_ = &patch.placed;
+    return true;
+  }
+
+  [[nodiscard]] VertexId vertex_of(std::uint32_t point) const {
+    return std::find_if(placed_->begin(), placed_->end(), [&](const Placed& p) { return p.point == point; })->vertex;
+  }
+
+  const FacetMesh& mesh_;
+  const Opening& opening_;
+  const Plane& plane_;
+  const std::vector<FaceId>& content_;  // ascending
+  std::vector<FaceId> faces_;
+  FaceId look_ = none;
+  const std::vector<Placed>* placed_ = nullptr;
+};
+
+// Draws the wall anew where the hole was.
+class WallMaker {
+ public:
+  WallMaker(const FacetMesh& mesh, const Opening& opening, const std::vector<FaceId>& around)
+      : mesh_(mesh), opening_(opening), around_(around), normal_(mesh.faces[opening.wall].normal) {}
+
+  bool run(Patch& patch) {
+    std::vector<Edge> edges = outline(mesh_, around_);
+    std::erase_if(edges, [&](const Edge& e) { return is_side(opening_, e.first, e.second); });
+    auto rings = chain(mesh_, edges, normal_);
+    double whole = 0.0;
+    std::size_t outer = 0;
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+      const double a = signed_area(mesh_, rings[i], normal_);
+      whole += a;
+      if (a <= 0.0) continue;
+      if (outer != 0) return false;
+      outer = i + 1;
+    }
+    if (outer == 0) return false;
+    double drawn = 0.0;
+    for (const FaceId f : around_) drawn += area(mesh_, f);
+    if (std::abs(drawn + opening_.area_m2 - whole) > 1e-3 * whole) return false;
+    std::swap(rings[0], rings[outer - 1]);
+    const auto triangles = triangulate(mesh_, rings);
+    if (triangles.size() > around_.size() || !covers(mesh_, triangles, normal_, whole)) return false;
+    patch.surface = mesh_.faces[opening_.wall].surface;
+    patch.normal = normal_;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      Redrawn r{around_[i], triangles[i], {}};
+      for (std::size_t k = 0; k < 3; ++k) {
+        r.vertex[k] = vertex_at(r.point[k]);
+        if (r.vertex[k] == none) return false;
+      }
+      patch.redrawn.push_back(r);
+    }
+    patch.gone.assign(around_.begin() + static_cast<std::ptrdiff_t>(triangles.size()), around_.end());
+    return true;
+  }
+
+ private:
+  // The wall's vertex there; none if the wall has a seam there.
+  [[nodiscard]] VertexId vertex_at(std::uint32_t point) const {
+    VertexId found = none;
+    for (const FaceId f : around_) {
+      const Face& face = mesh_.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (face.point[k] != point || face.vertex[k] == found) continue;
+        if (found != none && !same_looks(mesh_.values, found, face.vertex[k])) return none;
+        found = std::min(found, face.vertex[k]);
+      }
+    }
+    return found;
+  }
+
+  const FacetMesh& mesh_;
+  const Opening& opening_;
+  const std::vector<FaceId>& around_;  // ascending
+  glm::dvec3 normal_;
+};
+
+// The faces that fill the hole in its plane; false if they do not fill it exactly.
+bool find_filling(const FacetMesh& mesh, const Opening& opening, const Plane& plane, const std::vector<FaceId>& around,
+                  std::vector<FaceId>& filling) {
+  std::vector<Edge> wanted;
+  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+    wanted.emplace_back(opening.loop[(i + 1) % opening.loop.size()], opening.loop[i]);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  const auto visit = [&](std::uint32_t a, std::uint32_t b) {
+    for (const FaceId f : mesh.faces_of[a]) {
+      if (!has_edge(mesh.faces[f], a, b) || contains(around, f)) continue;
+      if (std::find(filling.begin(), filling.end(), f) == filling.end()) filling.push_back(f);
+    }
+  };
+  for (const auto& [a, b] : wanted) visit(a, b);
+  for (std::size_t i = 0; i < filling.size(); ++i) {
+    if (filling.size() > 4 * most_corners) return false;
+    const Face& face = mesh.faces[filling[i]];
+    if (!lies_in(mesh, face, plane.normal, plane.offset_m)) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Edge e{face.point[k], face.point[k == 2 ? 0 : k + 1]};
+      if (!std::binary_search(wanted.begin(), wanted.end(), e)) visit(e.second, e.first);
+    }
+  }
+  std::sort(filling.begin(), filling.end());
+  return filling.empty() || outline(mesh, filling) == wanted;
+}
+
+}  // namespace
+
+std::vector<Opening> find_openings(const FacetMesh& mesh) {
+  std::vector<Opening> openings;
+  for (const std::vector<FaceId>& wall : find_walls(mesh)) {
+    if (wall.size() < 6) continue;
+    const glm::dvec3 normal = mesh.faces[wall.front()].normal;
+    for (auto& loop : chain(mesh, outline(mesh, wall), normal)) {
+      const double a = signed_area(mesh, loop, normal);
+      if (a >= 0.0 || loop.size() > most_corners) continue;
+      Opening opening;
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        opening.perimeter_m += glm::length(mesh.at(loop[i]) - mesh.at(loop[(i + 1) % loop.size()]));
+      }
+      opening.loop = std::move(loop);
+      opening.wall = wall.front();
+      opening.area_m2 = -a;
+      openings.push_back(std::move(opening));
+    }
+  }
+  std::stable_sort(openings.begin(), openings.end(),
+                   [](const Opening& a, const Opening& b) { return a.area_m2 < b.area_m2; });
+  return openings;
+}
+
+Niches::Niches(const FacetMesh& mesh)
+    : mesh_(mesh),
+      face_of_([&] {
+        std::vector<FaceId> live;
+        for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+          if (mesh.faces[f].live) live.push_back(f);
+        }
+        return live;
+      }()),
+      tree_(mesh.place, [&] {
+        std::vector<VertexId> indices;
+        for (const FaceId f : face_of_) {
+          indices.insert(indices.end(), mesh.faces[f].point.begin(), mesh.faces[f].point.end());
+        }
+        return indices;
+      }()) {}
+
+std::optional<OpeningJob> Niches::flatten(const Opening& opening) const {
+  if (!mesh_.faces[opening.wall].live) return std::nullopt;
+  const Plane plane = plane_of(mesh_, opening);
+  const Shape shape{mesh_, opening, plane.normal};
+  glm::dvec3 middle{0.0};
+  for (const std::uint32_t p : opening.loop) middle += mesh_.at(p) / static_cast<double>(opening.loop.size());
+  double radius = 0.0;
+  for (const std::uint32_t p : opening.loop) radius = std::max(radius, glm::length(mesh_.at(p) - middle));
+  std::vector<FaceId> content;
+  const auto stands_in = [&](FaceId i) {
+    const Face& face = mesh_.faces[face_of_[i]];
+    if (!face.live) return false;
+    return std::all_of(face.point.begin(), face.point.end(), [&](std::uint32_t p) {
+      const double h = plane.height(mesh_.at(p));
+      return h > -most_depth_m && h < most_height_m && shape.contains(mesh_.at(p), margin_m);
+    });
+  };
+  tree_.within(middle, radius + most_depth_m, stands_in, [&](FaceId i) {
+    const FaceId f = face_of_[i];
+    const Face& face = mesh_.faces[f];
+    // The wall itself may run around a bend of the outline.
+    const glm::dvec3 center = (mesh_.at(face.point[0]) + mesh_.at(face.point[1]) + mesh_.at(face.point[2])) / 3.0;
+    if (shape.contains(center, 0.0) || !lies_in(mesh_, face, plane.normal, plane.offset_m)) content.push_back(f);
+    return true;
+  });
+  std::sort(content.begin(), content.end());
+  if (content.size() + 2 < opening.loop.size()) return std::nullopt;
+  OpeningJob job;
+  double front = 0.0;
+  double back = 0.0;
+  for (const FaceId f : content) {
+    const Face& face = mesh_.faces[f];
+    const auto h = [&](std::size_t k) { return plane.height(mesh_.at(face.point[k])); };
+    const double a = area(mesh_, f);
+    const double facing = glm::dot(face.normal, plane.normal);
+    if (facing > facing_cosine) front += a;
+    if (facing < -facing_cosine) back += a;
+    job.cost += a * mean_square(h(0), h(1), h(2));
+    job.error_m = std::max({job.error_m, std::abs(h(0)), std::abs(h(1)), std::abs(h(2))});
+    // Nothing outside may hang on what goes.
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a0 = face.point[k];
+      const std::uint32_t b0 = face.point[k == 2 ? 0 : k + 1];
+      const bool on_loop = is_side(opening, a0, b0) || is_side(opening, b0, a0);
+      if (on_loop) continue;
+      for (const FaceId other : mesh_.faces_of[a0]) {
+        if (has_point(mesh_.faces[other], b0) && !contains(content, other)) return std::nullopt;
+      }
+    }
+  }
+  if (std::max(front, back) < covered * opening.area_m2 || is_sewn(mesh_, opening, content)) return std::nullopt;
+  if (!PaneMaker{mesh_, opening, plane, content}.run(job.patch)) return std::nullopt;
+  job.error_m += most_deviation(mesh_, content);
+  return job;
+}
+
+std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
+  if (!mesh.faces[opening.wall].live) return std::nullopt;
+  const Plane plane = plane_of(mesh, opening);
+  const MaterialId material = mesh.source->face_material(opening.wall);
+  std::vector<FaceId> around;
+  for (const std::uint32_t p : opening.loop) {
+    for (const FaceId f : mesh.faces_of[p]) {
+      if (mesh.source->face_material(f) == material && lies_in(mesh, mesh.faces[f], plane.normal, plane.offset_m))
+        around.push_back(f);
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  std::vector<FaceId> filling;
+  if (!find_filling(mesh, opening, plane, around, filling)) return std::nullopt;
+  for (const std::uint32_t p : opening.loop) {
+    for (const FaceId f : mesh.faces_of[p]) {
+      if (!contains(around, f) && !contains(filling, f)) return std::nullopt;
+    }
+  }
+  OpeningJob job;
+  if (!WallMaker{mesh, opening, around}.run(job.patch)) return std::nullopt;
+  job.patch.gone.insert(job.patch.gone.end(), filling.begin(), filling.end());
+  // As wide as a square of its area and outline.
+  const double size = 2.0 * opening.area_m2 / opening.perimeter_m;
+  job.cost = (filling.empty() ? 1.0 : look_weight) * opening.area_m2 * size * size / 3.0;
+  job.error_m = size + std::max(most_deviation(mesh, around), most_deviation(mesh, filling));
+  // The outline shrinks into its first corner.
+  const auto shrink = [&](const std::vector<FaceId>& faces) {
+    std::vector<Merged> first;
+    for (const FaceId f : faces) {
+      const Face& face = mesh.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (face.point[k] == opening.loop[0] && first.empty()) first.push_back({face.vertex[k], face.vertex[k]});
+      }
+    }
+    if (first.empty()) return;
+    for (const FaceId f : faces) {
+      const Face& face = mesh.faces[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (std::find(opening.loop.begin(), opening.loop.end(), face.point[k]) != opening.loop.end()) {
+          job.patch.merged.push_back({face.vertex[k], first[0].vertex});
+        }
+      }
+    }
+  };
+  shrink(around);
+  shrink(filling);
+  return job;
+}
+
+}  // namespace lodestone::facets

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "facets/outline.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::facets {
+namespace {
+
+constexpr double parallel_cosine = 0.99;  // small faces turn far by a few millimetres
+constexpr double plane_m = 0.006;
+
+// Counter-clockwise from direction a to b, 0..4, grows with the angle.
+double turn(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& normal) {
+  const double along = glm::dot(a, b);
+  const double across = glm::dot(glm::cross(a, b), normal);
+  const double length = std::abs(along) + std::abs(across);
+  if (!(length > 0.0)) return 4.0;
+  const double t = across / length;
+  return along >= 0.0 ? (across >= 0.0 ? t : 4.0 + t) : 2.0 - t;
+}
+
+}  // namespace
+
+bool lies_in(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m) {
+  return glm::dot(face.normal, normal) > parallel_cosine &&
+         std::all_of(face.point.begin(), face.point.end(),
+                     [&](std::uint32_t p) { return std::abs(glm::dot(normal, mesh.at(p)) - offset_m) < plane_m; });
+}
+
+std::vector<Edge> outline(const FacetMesh& mesh, const std::vector<FaceId>& faces) {
+  std::vector<Edge> edges;
+  edges.reserve(3 * faces.size());
+  for (const FaceId f : faces) {
+    const auto& p = mesh.faces[f].point;
+    for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(p[k], p[k == 2 ? 0 : k + 1]);
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> open;
+  for (const Edge& e : edges) {
+    if (!std::binary_search(edges.begin(), edges.end(), Edge{e.second, e.first})) open.push_back(e);
+  }
+  return open;
+}
+
+std::vector<std::vector<std::uint32_t>> chain(const FacetMesh& mesh, std::vector<Edge> edges,
+                                              const glm::dvec3& normal) {
+  std::vector<std::vector<std::uint32_t>> loops;
+  std::vector<std::uint8_t> used(edges.size(), 0);
+  for (std::size_t start = 0; start < edges.size(); ++start) {
+    if (used[start] != 0) continue;
+    std::vector<std::uint32_t> loop;
+    std::size_t at = start;
+    while (used[at] == 0) {
+      used[at] = 1;
+      const auto [from, to] = edges[at];
+      loop.push_back(from);
+      // The next edge around what lies outside.
+      double least = 5.0;
+      for (auto e = std::lower_bound(edges.begin(), edges.end(), Edge{to, 0}); e != edges.end() && e->first == to;
+           ++e) {
+        const auto index = static_cast<std::size_t>(e - edges.begin());
+        if (used[index] != 0 && index != start) continue;
+        double angle = turn(mesh.at(from) - mesh.at(to), mesh.at(e->second) - mesh.at(to), normal);
+        if (angle < 1e-9) angle = 4.0;
+        if (angle < least) {
+          least = angle;
+          at = index;
+        }
+      }
+      if (least == 5.0) break;
+    }
+    if (at == start && loop.size() > 2) loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+double signed_area(const FacetMesh& mesh, const std::vector<std::uint32_t>& loop, const glm::dvec3& normal) {
+  glm::dvec3 sum{0.0};
+  const glm::dvec3 a = mesh.at(loop[0]);
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) sum += glm::cross(mesh.at(loop[i]) - a, mesh.at(loop[i + 1]) - a);
+  return 0.5 * glm::dot(sum, normal);
+}
+
+}  // namespace lodestone::facets

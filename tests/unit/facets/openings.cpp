@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/facet_shift.h>
+#include <lodestone/metrics.h>
+
+#include <catch2/catch.hpp>
+
+#include "shapes.h"
+
+namespace lodestone {
+namespace {
+
+void add_quad(Mesh& mesh, MaterialId material, const std::array<glm::vec3, 4>& corners) {
+  const auto first = static_cast<VertexId>(mesh.vertices.size());
+  mesh.vertices.positions.insert(mesh.vertices.positions.end(), corners.begin(), corners.end());
+  mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+  mesh.face_materials.insert(mesh.face_materials.end(), 2, material);
+}
+
+// A wall of 10 m by 6 m in the plane y = 0 with a window hole of 1 m by 1.5 m; in it, sharing no point with the wall, a
+// pane `depth` behind the wall with a frame of four bars before it.
+Mesh wall_with_loose_window(float depth) {
+  Mesh mesh;
+  mesh.materials.resize(2);
+  add_quad(mesh, 0, {{{0, 0, 0}, {10, 0, 0}, {5, 0, 2}, {4, 0, 2}}});
+  add_quad(mesh, 0, {{{10, 0, 0}, {10, 0, 6}, {5, 0, 3.5F}, {5, 0, 2}}});
+  add_quad(mesh, 0, {{{10, 0, 6}, {0, 0, 6}, {4, 0, 3.5F}, {5, 0, 3.5F}}});
+  add_quad(mesh, 0, {{{0, 0, 6}, {0, 0, 0}, {4, 0, 2}, {4, 0, 3.5F}}});
+  const auto front = [&](MaterialId material, float x0, float x1, float z0, float z1, float y) {
+    add_quad(mesh, material, {{{x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1}}});
+  };
+  front(1, 4.01F, 4.99F, 2.01F, 3.49F, depth);
+  front(0, 4.02F, 4.06F, 2.02F, 3.48F, depth - 0.02F);
+  front(0, 4.94F, 4.98F, 2.02F, 3.48F, depth - 0.02F);
+  return mesh;
+}
+
+double area_of(const Mesh& mesh, MaterialId material) {
+  double sum = 0.0;
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) {
+    if (mesh.face_material(f) != material) continue;
+    const auto at = [&](std::uint32_t k) {
+      return glm::dvec3{mesh.vertices.positions[mesh.indices[3 * std::size_t{f} + k]]};
+    };
+    sum += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+  }
+  return sum;
+}
+
+TEST_CASE("a loose window comes forward, is sewn to its hole, and goes whole at the error of its own size") {
+  const Mesh mesh = wall_with_loose_window(0.1F);
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  CHECK(compare_with_source(*built->model, mesh) == "");
+  CHECK(built->report.openings_flattened == 1);
+  CHECK(built->report.openings_filled == 1);
+  bool flush = false;
+  for (Level level = 0; level <= built->model->record_count(); ++level) {
+    CAPTURE(level);
+    const Mesh shown = built->model->extract(level);
+    CHECK(normal_deviation_rad(mesh, shown) < 1e-6);
+    const double window = area_of(shown, 1);
+    // A window has its own outline or is gone: nothing of its colour in between.
+    CHECK((window == Approx(1.5).epsilon(1e-4) || window == Approx(0.98 * 1.48).epsilon(1e-4) || window == 0.0));
+    // The wall never covers a window that is there, and covers all where it is not.
+    if (window == 0.0) {
+      CHECK(area_of(shown, 0) == Approx(60.0).epsilon(1e-4));
+      CHECK(built->model->error_m(level) > 0.3);
+    }
+    flush = flush || (window == Approx(1.5).epsilon(1e-4) && area_of(shown, 0) == Approx(58.5).epsilon(1e-4));
+  }
+  CHECK(flush);
+}
+
+TEST_CASE("an opening with nothing in it stays open as long as a window would stay") {
+  Mesh mesh = wall_with_loose_window(0.1F);
+  mesh.indices.resize(3 * 8);
+  mesh.face_materials.resize(8);
+  const auto built = build_by_facet_shift(mesh, {.max_error_m = 0.3});
+  REQUIRE(built.ok());
+  CHECK(area_of(built->model->extract(0), 0) == Approx(58.5).epsilon(1e-4));
+}
+
+TEST_CASE("walls in pieces are sewn at T-junctions, and the finest level still counts as the source") {
+  Mesh mesh;
+  mesh.materials.emplace_back();
+  add_quad(mesh, 0, {{{0, 0, 0}, {4, 0, 0}, {4, 0, 2}, {0, 0, 2}}});
+  add_quad(mesh, 0, {{{0, 0, 2}, {1, 0, 2}, {1, 0, 4}, {0, 0, 4}}});
+  add_quad(mesh, 0, {{{1, 0, 2}, {4, 0, 2}, {4, 0, 4}, {1, 0, 4}}});
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  CHECK(built->report.closed_t_junctions == 1);
+  CHECK(compare_with_source(*built->model, mesh) == "");
+  CHECK(built->model->extract(built->model->level_of_triangles(2)).triangle_count() == 2);
+  const auto left = build_by_facet_shift(mesh, {.t_junction_tolerance_m = 0.0});
+  REQUIRE(left.ok());
+  CHECK(left->model->info(left->model->record_count()).triangles == mesh.triangle_count());
+  // A triangle more, or one that is somewhere else, is still told.
+  Mesh other = mesh;
+  other.vertices.positions[4].z += 0.01F;
+  CHECK(compare_with_source(*built->model, other) != "");
+  other = mesh;
+  other.indices.resize(other.indices.size() - 3);
+  other.face_materials.pop_back();
+  CHECK(compare_with_source(*built->model, other) != "");
+}
+
+}  // namespace
+}  // namespace lodestone
