@@ -82,7 +82,8 @@ class Engine {
   std::uint32_t faces_left_;
   std::uint32_t pass_ = 0;
   double diagonal_m_ = 0.0;
-  double error_m_ = 0.0;  // largest so far
+  double error_m_ = 0.0;      // largest so far
+  double pruned_to_m_ = 0.0;  // limit of the last search for parts that may go
   bool loose_ = false;
   bool last_resort_ = false;
   bool soup_ = false;  // not manifold to begin with
@@ -221,6 +222,7 @@ bool Engine::prune(double limit_m) {
   if (done()) return false;
   PassLog log;
   limit_m = std::min(limit_m, options_.max_error_m);
+  pruned_to_m_ = limit_m;
   error_m_ = std::max(error_m_, double{prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, log)});
   for (std::size_t i = 0; i < log.size() && !done(); ++i) {
     const Edit edit = log.edit(i);
@@ -265,7 +267,7 @@ CollapseReport Engine::run() {
   while (!done()) {
     const std::uint32_t before = faces_left_;
     const bool any = pass(share);
-    prune(prune_share * error_m_);
+    if (prune_share * error_m_ > prune_growth * pruned_to_m_) prune(prune_share * error_m_);
     context_.report("collapse", 1.0 - faces_left_ / total);
     if (!any && share >= 1.0 && !relax() && !prune_anew()) break;
     const double wanted = 0.5 * quota() * before;

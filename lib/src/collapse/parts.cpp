@@ -37,17 +37,20 @@ class Search {
           distance, found.face == none ? std::numeric_limits<double>::infinity() : std::sqrt(found.squared_distance));
       if (found.face != none) part.nearest.push_back(found.face);
     };
+    std::vector<std::uint32_t> points;
     for (const std::uint32_t i : part.faces) {
-      glm::dvec3 middle{0.0};
-      for (const std::uint32_t p : mesh_.faces[i].point) {
-        const glm::dvec3 at{mesh_.position[p]};
-        middle += at / 3.0;
-        deviation = std::max(deviation, double{mesh_.deviation_m[p]});
-        look(at);
-        if (!(distance <= limit_m)) break;
-      }
-      look(middle);
-      if (!(distance <= limit_m)) break;
+      points.insert(points.end(), mesh_.faces[i].point.begin(), mesh_.faces[i].point.end());
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    for (auto p = points.begin(); p != points.end() && distance <= limit_m; ++p) {
+      deviation = std::max(deviation, double{mesh_.deviation_m[*p]});
+      look(glm::dvec3{mesh_.position[*p]});
+    }
+    for (auto i = part.faces.begin(); i != part.faces.end() && distance <= limit_m; ++i) {
+      const auto& p = mesh_.faces[*i].point;
+      const auto at = [&](std::size_t k) { return glm::dvec3{mesh_.position[p[k]]}; };
+      look((at(0) + at(1) + at(2)) / 3.0);
     }
     part.error_m = distance + deviation;
   }
