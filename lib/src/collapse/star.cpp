@@ -9,27 +9,23 @@ bool inside(Range region, std::uint32_t p) { return p - region.begin < region.en
 // Adds the faces at one end; those on the edge only when seen from u.
 bool add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Range region, Star& star) {
   const glm::dvec3 origin{mesh.position[star.u]};
+  const std::uint32_t far = is_u ? star.v : star.u;
   const glm::dvec3 at_near = is_u ? glm::dvec3{0.0} : star.e;
   for (std::uint32_t i = mesh.first[near]; i != mesh.first[near + 1]; ++i) {
     const std::uint32_t index = mesh.corners[i] >> 2U;
     const std::uint32_t k = mesh.corners[i] & 3U;
     const Face& f = mesh.faces[index];
     if (f.id == none) continue;
-    StarFace face;
-    face.a = f.point[k == 2 ? 0 : k + 1];
-    face.b = f.point[k == 0 ? 2 : k - 1];
-    const std::uint32_t far = is_u ? star.v : star.u;
-    const bool shared = face.a == far || face.b == far;
+    const std::uint32_t a = f.point[k == 2 ? 0 : k + 1];
+    const std::uint32_t b = f.point[k == 0 ? 2 : k - 1];
+    const bool shared = a == far || b == far;
     if (shared && !is_u) continue;
-    if (!inside(region, face.a) || !inside(region, face.b)) return false;
-    face.index = index;
-    face.k = k;
-    face.side = shared ? Side::Both : is_u ? Side::U : Side::V;
+    if (!inside(region, a) || !inside(region, b)) return false;
     star.shared += shared ? 1U : 0U;
-    face.at_a = glm::dvec3{mesh.position[face.a]} - origin;
-    face.at_b = glm::dvec3{mesh.position[face.b]} - origin;
-    face.normal = glm::cross(face.at_a - at_near, face.at_b - at_near);
-    star.faces.push_back(face);
+    const glm::dvec3 at_a = glm::dvec3{mesh.position[a]} - origin;
+    const glm::dvec3 at_b = glm::dvec3{mesh.position[b]} - origin;
+    const Side side = shared ? Side::Both : is_u ? Side::U : Side::V;
+    star.faces.emplace_back(index, k, a, b, side, at_a, at_b, glm::cross(at_a - at_near, at_b - at_near));
   }
   return true;
 }

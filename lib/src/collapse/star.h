@@ -15,13 +15,17 @@ enum class Side : std::uint8_t { U, V, Both };
 // A face seen from its corner at u (sides U and Both) or at v (side V): a and b are the next two points.
 // Places are relative to u.
 struct StarFace {
-  std::uint32_t index = 0;  // in WorkingMesh::faces
-  std::uint32_t k = 0;      // corner at the near end
-  std::uint32_t a = 0, b = 0;
-  Side side = Side::U;
+  StarFace(std::uint32_t face, std::uint32_t corner, std::uint32_t next, std::uint32_t previous, Side on,
+           const glm::dvec3& next_at, const glm::dvec3& previous_at, const glm::dvec3& across) noexcept
+      : index(face), k(corner), a(next), b(previous), side(on), at_a(next_at), at_b(previous_at), normal(across) {}
+
+  std::uint32_t index;  // in WorkingMesh::faces
+  std::uint32_t k;      // corner at the near end
+  std::uint32_t a, b;
+  Side side;
   bool twin = false;  // would coincide with an earlier face of the star: goes with the collapse
-  glm::dvec3 at_a{0.0}, at_b{0.0};
-  glm::dvec3 normal{0.0};  // twice the area long
+  glm::dvec3 at_a, at_b;
+  glm::dvec3 normal;  // twice the area long
 };
 
 // An edge at u or v that is a line: border, three and more faces, seam, material border or sharp.
