@@ -15,6 +15,9 @@ endif()
 if(LODESTONE_PROGRAMS)
   install(TARGETS lodestone_program lodestone-view)
 endif()
+if(TARGET lodestone-osgb)
+  install(TARGETS lodestone-osgb)
+endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lodestoneConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/lodestoneConfig.cmake INSTALL_DESTINATION ${package_dir})

@@ -15,7 +15,7 @@ packages_of() {
     build) echo g++ cmake ninja-build pkg-config git ca-certificates \
       libglm-dev libtbb-dev libopenmesh-dev libnlopt-dev libmetis-dev libcereal-dev libzstd-dev libxxhash-dev \
       nlohmann-json3-dev libcli11-dev libassimp-dev libtinygltf-dev libpugixml-dev \
-      libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev libproj-dev libgdal-dev zlib1g-dev ;;
+      libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev libproj-dev libopenscenegraph-dev libgdal-dev zlib1g-dev ;;
     viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;
     test) echo catch2 librapidcheck-dev python3 npm xvfb xdotool imagemagick assimp-testmodels ;;
     bench) echo libmeshoptimizer-dev libcgal-dev libdraco-dev libtinyobjloader-dev npm ;;

@@ -2,6 +2,7 @@
 #include <lodestone/tileset_writer.h>
 
 #include "mesh_input.h"
+#include "run_program.h"
 #include "verbs.h"
 
 namespace lodestone::cli {
@@ -17,6 +18,7 @@ class Outcrop final : public Verb {
 
  private:
   [[nodiscard]] TilesetOptions options() const;
+  [[nodiscard]] Status turn_into_osgb(const std::filesystem::path& tiles) const;
   static void describe(Session& session, const TilesetReport& written);
 
   MeshInput input_;
@@ -35,7 +37,7 @@ class Outcrop final : public Verb {
 void Outcrop::declare(Arguments& arguments) {
   input_.declare(arguments, "FILE", "Textured mesh");
   arguments.file("-o,--output", output_, "Folder to write", Need::Required);
-  arguments.choice("--as", as_, {"3dtiles"}, "Kind of tiles");
+  arguments.choice("--as", as_, {"3dtiles", "osgb"}, "Kind of tiles; osgb is OpenSceneGraph's");
   arguments.number("--ratio", ratio_, 0.0, 0.95, "Triangles kept from level to level, 0 = as the textures ask");
   arguments.number("--texture-ratio", texture_ratio_, 0.0, 0.95,
                    "Texture width kept from level to level, 0 = --ratio, or a half");
@@ -89,17 +91,45 @@ void Outcrop::describe(Session& session, const TilesetReport& written) {
   }
 }
 
+// By OpenSceneGraph's own library, in a program of its own.
+Status Outcrop::turn_into_osgb(const std::filesystem::path& tiles) const {
+  const std::string program = find_program("lodestone-osgb", ".").string();
+  const auto ended = run_to_end({program, (tiles / "tileset.json").string(), output_.string()});
+  if (!ended) return Error{ErrorCode::Unsupported, "cannot be started, build it with OpenSceneGraph", program};
+  if (ended->status == 0) return Done{};
+  std::string message = ended->last_words.substr(0, ended->last_words.find('\n'));
+  if (message.empty()) message = "OpenSceneGraph ended without a word";
+  return Error{ErrorCode::Unreadable, message, output_.string()};
+}
+
+std::uint64_t bytes_below(const std::filesystem::path& folder) {
+  std::error_code fault;
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator{folder, fault}) {
+    if (entry.is_regular_file(fault)) bytes += entry.file_size(fault);
+  }
+  return bytes;
+}
+
 Status Outcrop::run(Session& session) {
+  const bool osgb = as_ == "osgb";
+  const std::filesystem::path tiles = osgb ? output_ / "3dtiles" : output_;
   auto loaded = input_.read(session, LoadTextures::Reference);
   if (!loaded) return loaded.error();
-  auto written = write_outcrop(std::move(loaded->mesh), output_, options(), session.context());
+  auto written = write_outcrop(std::move(loaded->mesh), tiles, options(), session.context());
   session.keep(written);
   if (!written) return written.error();
-  const auto check = check_tileset(output_ / "tileset.json", session.context());
+  const auto check = check_tileset(tiles / "tileset.json", session.context());
   if (!check) return check.error();
   std::vector<Warning> faults;
   for (const std::string& fault : check->faults) faults.push_back({fault, output_.string()});
   session.keep(std::move(faults));
+  if (osgb) {
+    if (Status status = turn_into_osgb(tiles); !status) return status;
+    std::error_code fault;
+    std::filesystem::remove_all(tiles, fault);
+    written->bytes = bytes_below(output_);
+  }
   Report& report = session.report();
   report.set("tiles", written->tiles);
   report.set("levels", static_cast<std::uint32_t>(written->levels.size()));

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The window is a program of its own, because the headless renderer in this one brings another OpenGL along.
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
-
+#include "run_program.h"
 #include "verbs.h"
 
 namespace lodestone::cli {
@@ -32,44 +25,7 @@ class View final : public Verb {
 };
 
 // lodestone-view beside this program, as installed; else in the build tree; else on the PATH.
-std::filesystem::path find_viewer() {
-  std::error_code fault;
-  const auto here = std::filesystem::read_symlink("/proc/self/exe", fault).parent_path();
-  for (const auto& place : {here / "lodestone-view", here / ".." / "viewer" / "window" / "lodestone-view"}) {
-    if (std::filesystem::exists(place, fault)) return place;
-  }
-  return "lodestone-view";
-}
-
-struct Ended {
-  int status = 0;
-  std::string last_words;  // last line on stderr
-};
-
-// Runs a program to its end; none if it cannot be started.
-std::optional<Ended> run_to_end(std::vector<std::string> command) {
-  std::vector<char*> words;
-  for (std::string& word : command) words.push_back(word.data());
-  words.push_back(nullptr);
-  int channel[2];
-  if (::pipe2(channel, O_CLOEXEC) != 0) return std::nullopt;
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_adddup2(&actions, channel[1], STDERR_FILENO);
-  pid_t child = 0;
-  const int fault = ::posix_spawnp(&child, words.front(), &actions, nullptr, words.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  ::close(channel[1]);
-  std::FILE* said = ::fdopen(channel[0], "r");
-  Ended ended;
-  char line[1024];
-  while (fault == 0 && std::fgets(line, sizeof line, said) != nullptr) ended.last_words = line;
-  std::fclose(said);
-  if (fault != 0) return std::nullopt;
-  while (::waitpid(child, &ended.status, 0) < 0 && errno == EINTR) {
-  }
-  return ended;
-}
+std::filesystem::path find_viewer() { return find_program("lodestone-view", "../viewer/window"); }
 
 Status View::run(Session& session) {
   std::error_code fault;

@@ -51,6 +51,7 @@ NAMES = {
     r"imgui": ["viewer/"],
     r"GL/|GLES\d?/|epoxy/|glad/": ["viewer/"],
     r"assimp/": ["formats/src/meshes/"],
+    r"osg(DB|Util|Viewer)?/": ["formats/src/osgb/"],
     r"proj\.h": ["formats/src/tiles3d/"],
     r"CLI/": ["cli/frame/", "viewer/window/main.cpp"],
     r"nlohmann/": ["formats/src/", "cli/frame/report.cpp"],

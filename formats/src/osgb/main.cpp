@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// lodestone-osgb: a tileset of ours as a tree of OpenSceneGraph files, by OSG's own library. A program of its own
+// because that library brings libGL along, which must not meet OSMesa in one process.
+//
+//     lodestone-osgb TILESET.json FOLDER      writes FOLDER/main.osgb and FOLDER/Data/*.osgb
+//
+// Based on: Ao et al. 2025, sections 3.5.1 and 3.5.2 (PagedLOD, switching by pixel size).
+// Differs: the threshold is not the size of the tile's texture but the size at which the tile's error reaches a pixel,
+// by the formula that OSG uses: px = 2 R / z * sqrt(p^2 + (W^2 + H^2) / 8), p = H / (2 tan(fov_y / 2)).
+#include <osg/Geode>
+#include <osg/Geometry>
+#include <osg/MatrixTransform>
+#include <osg/PagedLOD>
+#include <osg/Texture2D>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgDB/WriteFile>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <lodestone/tile_loader.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using lodestone::GroupId;
+using lodestone::Mesh;
+using lodestone::NodeId;
+
+// The view that thresholds are made for; others switch a little earlier or later.
+constexpr double width_px = 1920.0;
+constexpr double height_px = 1080.0;
+constexpr double fov_y_rad = 0.8;
+
+// Size on OSG's screen at which an error in the sphere's nearest point covers a pixel.
+float threshold_px(double radius_m, double error_m) {
+  const double focal_px = height_px / (2.0 * std::tan(fov_y_rad * 0.5));
+  const double z_m = error_m * focal_px + radius_m;
+  const double diagonal2 = (width_px * width_px + height_px * height_px) / 8.0;
+  return static_cast<float>(2.0 * radius_m / z_m * std::sqrt(focal_px * focal_px + diagonal2));
+}
+
+class Writer {
+ public:
+  Writer(const lodestone::TilePyramid& pyramid, fs::path folder) : pyramid_(pyramid), folder_(std::move(folder)) {
+    options_ = new osgDB::Options("WriteImageHint=IncludeFile Compressor=zlib");
+    // A node's children are the fine side of the group that it was made by.
+    const lodestone::LodGraph& graph = pyramid.graph();
+    made_by_.assign(graph.nodes.size(), lodestone::none);
+    for (const lodestone::LodLink& link : graph.links) {
+      for (NodeId n = link.nodes.begin; n < link.nodes.end; ++n) made_by_[n] = link.maker;
+    }
+  }
+  bool write();
+
+ private:
+  [[nodiscard]] std::string children_name(NodeId tile) const {
+    return fs::path{pyramid_.name(tile)}.stem().string() + "_children.osgb";
+  }
+  osg::ref_ptr<osg::Node> node_of(NodeId tile, bool in_root);
+  osg::ref_ptr<osg::Geode> geode_of(NodeId tile, const Mesh& mesh);
+  osg::ref_ptr<osg::StateSet> look_of(NodeId tile, const Mesh& mesh);
+  bool write_children(NodeId tile);
+  bool fail(const std::string& what) {
+    std::fprintf(stderr, "lodestone-osgb: %s\n", what.c_str());
+    return false;
+  }
+
+  const lodestone::TilePyramid& pyramid_;
+  fs::path folder_;
+  osg::ref_ptr<osgDB::Options> options_;
+  std::vector<GroupId> made_by_;
+  bool failed_ = false;
+};
+
+// The photograph's bytes go into the file as they are: OSG takes them from a file of the image's name.
+osg::ref_ptr<osg::StateSet> Writer::look_of(NodeId tile, const Mesh& mesh) {
+  osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+  if (mesh.textures.empty() || !mesh.textures.front().encoded) return state;
+  const lodestone::Texture& texture = mesh.textures.front();
+  const bool png = texture.mime_type == "image/png";
+  const fs::path file = folder_ / "work" / (fs::path{pyramid_.name(tile)}.stem().string() + (png ? ".png" : ".jpg"));
+  std::ofstream{file, std::ios::binary}.write(reinterpret_cast<const char*>(texture.encoded->data()),
+                                              static_cast<std::streamsize>(texture.encoded->size()));
+  osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(file.string());
+  if (!image) {
+    failed_ = !fail(file.string() + ": the texture cannot be read by OpenSceneGraph, install its image plugins");
+    return state;
+  }
+  osg::ref_ptr<osg::Texture2D> picture = new osg::Texture2D{image};
+  picture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
+  picture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
+  picture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+  picture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+  picture->setUnRefImageDataAfterApply(true);
+  state->setTextureAttributeAndModes(0, picture);
+  state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);  // light is in the photograph already
+  return state;
+}
+
+osg::ref_ptr<osg::Geometry> arrays_of(const Mesh& mesh) {
+  osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+  osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
+  for (const auto& p : mesh.vertices.positions) {
+    const glm::dvec3 at = mesh.origin + glm::dvec3{p};
+    positions->push_back(osg::Vec3(static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)));
+  }
+  geometry->setVertexArray(positions);
+  if (!mesh.vertices.normals.empty()) {
+    osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
+    for (const auto& n : mesh.vertices.normals) normals->push_back(osg::Vec3(n.x, n.y, n.z));
+    geometry->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
+  }
+  if (!mesh.vertices.uvs.empty()) {
+    osg::ref_ptr<osg::Vec2Array> uvs = new osg::Vec2Array;
+    for (const auto& uv : mesh.vertices.uvs) uvs->push_back(osg::Vec2(uv.x, uv.y));
+    geometry->setTexCoordArray(0, uvs);
+  }
+  if (!mesh.vertices.colors.empty()) {
+    osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray;
+    for (const auto& c : mesh.vertices.colors) colors->push_back(osg::Vec4ub(c.r, c.g, c.b, c.a));
+    colors->setNormalize(true);
+    geometry->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
+  }
+  geometry->setUseDisplayList(false);
+  geometry->setUseVertexBufferObjects(true);
+  return geometry;
+}
+
+// Textured faces and plain ones apart, over the same vertices.
+osg::ref_ptr<osg::Geode> Writer::geode_of(NodeId tile, const Mesh& mesh) {
+  osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+  const osg::ref_ptr<osg::Geometry> arrays = arrays_of(mesh);
+  for (const bool textured : {true, false}) {
+    osg::ref_ptr<osg::DrawElementsUInt> faces = new osg::DrawElementsUInt(GL_TRIANGLES);
+    for (lodestone::FaceId f = 0; f < mesh.triangle_count(); ++f) {
+      if ((mesh.materials[mesh.face_material(f)].texture != lodestone::none) != textured) continue;
+      for (std::size_t k = 0; k < 3; ++k) faces->push_back(mesh.indices[3 * std::size_t{f} + k]);
+    }
+    if (faces->empty()) continue;
+    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry(*arrays);
+    geometry->addPrimitiveSet(faces);
+    if (textured) geometry->setStateSet(look_of(tile, mesh));
+    geode->addDrawable(geometry);
+  }
+  return geode;
+}
+
+osg::ref_ptr<osg::Node> Writer::node_of(NodeId tile, bool in_root) {
+  const auto mesh = pyramid_.load(tile, lodestone::LoadTextures::Encoded);
+  if (!mesh) {
+    failed_ = !fail(to_line(mesh.error()));
+    return nullptr;
+  }
+  osg::ref_ptr<osg::Geode> geode = geode_of(tile, *mesh);
+  if (made_by_[tile] == lodestone::none) return geode;
+  const lodestone::Sphere& bounds = pyramid_.graph().nodes[tile].bounds;
+  const float switch_px = threshold_px(bounds.radius_m, pyramid_.graph().groups[made_by_[tile]].error_m);
+  osg::ref_ptr<osg::PagedLOD> paged = new osg::PagedLOD;
+  paged->setRangeMode(osg::LOD::PIXEL_SIZE_ON_SCREEN);
+  paged->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
+  paged->setCenter(osg::Vec3d(bounds.center.x, bounds.center.y, bounds.center.z));
+  paged->setRadius(static_cast<float>(bounds.radius_m));
+  paged->addChild(geode, 0.0F, switch_px);
+  paged->setFileName(1, (in_root ? "Data/" : "") + children_name(tile));
+  paged->setRange(1, switch_px, std::numeric_limits<float>::max());
+  paged->setDatabasePath("");
+  return paged;
+}
+
+bool Writer::write_children(NodeId tile) {
+  const lodestone::Range children = pyramid_.graph().groups[made_by_[tile]].nodes;
+  osg::ref_ptr<osg::Group> group = new osg::Group;
+  for (NodeId n = children.begin; n < children.end; ++n) {
+    const osg::ref_ptr<osg::Node> node = node_of(n, false);
+    if (failed_) return false;
+    group->addChild(node);
+  }
+  const fs::path file = folder_ / "Data" / children_name(tile);
+  return osgDB::writeNodeFile(*group, file.string(), options_.get()) || fail(file.string() + ": cannot be written");
+}
+
+bool Writer::write() {
+  std::error_code fault;
+  for (const char* name : {"Data", "work"}) fs::create_directories(folder_ / name, fault);
+  if (fault) return fail(folder_.string() + ": cannot be made: " + fault.message());
+  const lodestone::LodGraph& graph = pyramid_.graph();
+  for (NodeId n = 0; n < graph.nodes.size(); ++n) {
+    if (made_by_[n] != lodestone::none && !write_children(n)) return false;
+  }
+  // Last: a folder with a main.osgb is whole.
+  const glm::dvec3& origin = pyramid_.origin();
+  osg::ref_ptr<osg::MatrixTransform> root =
+      new osg::MatrixTransform(osg::Matrix::translate(origin.x, origin.y, origin.z));
+  const lodestone::Range roots = graph.groups.front().nodes;
+  for (NodeId n = roots.begin; n < roots.end; ++n) {
+    const osg::ref_ptr<osg::Node> node = node_of(n, true);
+    if (failed_) return false;
+    root->addChild(node);
+  }
+  const fs::path file = folder_ / "main.osgb";
+  const bool written = osgDB::writeNodeFile(*root, file.string(), options_.get());
+  fs::remove_all(folder_ / "work", fault);
+  return written || fail(file.string() + ": cannot be written");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: lodestone-osgb TILESET.json FOLDER\n");
+    return 1;
+  }
+  const auto pyramid = lodestone::TilePyramid::open(argv[1]);
+  if (!pyramid) {
+    std::fprintf(stderr, "lodestone-osgb: %s\n", to_line(pyramid.error()).c_str());
+    return 2;
+  }
+  return Writer{**pyramid, argv[2]}.write() ? 0 : 2;
+}
