@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // A cluster graph from a mesh: how long, how full, how honest, and how fast cuts are found.
 //
-//     bench_clusters MESH [--threads N] [--errors]
+//     bench_clusters MESH [--threads N] [--errors] [--fly FRAMES]
 //
-// Prints one JSON object.
+// Prints one JSON object. --fly: the cut follows a camera that flies in, at 4 pixels, while pictures are taken from one
+// place, so that what changes between two of them is the model alone; `pop` is the largest block difference (0 to 255)
+// with the morph and without.
 #include <sys/resource.h>
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +19,8 @@
 #include <lodestone/clusters.h>
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
+
+#include "viewer/headless/headless.h"
 
 namespace {
 
@@ -69,20 +74,54 @@ void print_errors(const ClusterGraph& graph, const Mesh& source) {
   }
 }
 
+// The largest and the mean jump between pictures, groups morphed or exchanged at once.
+void print_fly(const ClusterGraph& graph, int frames, bool morphed) {
+  const Sphere& all = graph.graph.groups[0].bounds;
+  render::RenderOptions options{.width_px = 640, .height_px = 360};
+  options.look.coloring = render::Coloring::Untextured;
+  options.camera.eye_m = graph.origin + all.center - glm::dvec3{0.0, 1.6 * all.radius_m, -0.5 * all.radius_m};
+  options.camera.target_m = graph.origin + all.center;
+  CutScratch scratch;
+  std::vector<NodeId> cut;
+  std::vector<double> weights(graph.graph.groups.size(), 0.0);
+  Image before;
+  double most = 0.0;
+  double sum = 0.0;
+  for (int i = 0; i < frames; ++i) {
+    View view;
+    view.eye = all.center - glm::dvec3{0.0, (8.0 - 7.0 * i / frames) * all.radius_m, 0.0};
+    select_cut(graph.graph, view, {.error_px = 4.0, .culling = Culling::None}, scratch, cut);
+    std::fill(weights.begin(), weights.end(), 0.0);
+    for (const GroupId g : scratch.refined()) weights[g] = morphed ? morph_weight(graph.graph, view, 4.0, g) : 0.0;
+    auto picture = render::render_mesh(extract_morphed(graph, cut, weights), options);
+    if (!picture.ok()) return;
+    if (i > 0) {
+      const double pop = block_pop(before, picture->image);
+      most = std::max(most, pop);
+      sum += pop;
+    }
+    before = std::move(picture->image);
+  }
+  std::printf("\"pop_max_%s\": %.2f, \"pop_mean_%s\": %.3f, ", morphed ? "morph" : "hard", most,
+              morphed ? "morph" : "hard", sum / (frames - 1));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fputs("bench_clusters MESH [--threads N] [--errors]\n", stderr);
+    std::fputs("bench_clusters MESH [--threads N] [--errors] [--fly FRAMES]\n", stderr);
     return 1;
   }
   Context context;
   context.max_workers = 1;
   bool errors = false;
+  int frames = 0;
   for (int i = 2; i < argc; ++i) {
     if (std::strcmp(argv[i], "--threads") == 0 && i + 1 < argc)
       context.max_workers = static_cast<unsigned>(std::atoi(argv[++i]));
     if (std::strcmp(argv[i], "--errors") == 0) errors = true;
+    if (std::strcmp(argv[i], "--fly") == 0 && i + 1 < argc) frames = std::atoi(argv[++i]);
   }
   const auto loaded = read_mesh(argv[1], {.textures = LoadTextures::Reference});
   if (!loaded.ok()) {
@@ -103,6 +142,10 @@ int main(int argc, char** argv) {
   getrusage(RUSAGE_SELF, &usage);
   std::printf("{\"triangles\": %u, \"cpu_s\": %.2f, \"wall_s\": %.2f, \"peak_mb\": %ld, \"roots\": %zu, ",
               mesh.triangle_count(), seconds, wall_s, usage.ru_maxrss / 1024, graph->roots.size());
+  if (frames > 1) {
+    print_fly(*graph, frames, false);
+    print_fly(*graph, frames, true);
+  }
   std::printf("\"changed_border_edges\": %llu, \"levels\": [",
               static_cast<unsigned long long>(changed_border_edges(*graph)));
   for (const ClusterLevel& level : graph->levels) {
