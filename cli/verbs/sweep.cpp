@@ -35,6 +35,7 @@ class Sweep final : public Verb {
   double to_ = 0.02;
   double morph_s_ = render::SweepOptions{}.morph_seconds;
   bool and_back_ = false;
+  std::optional<double> perceptual_m_;
   CameraOptions camera_{{960, 540}};
 };
 
@@ -43,6 +44,8 @@ void Sweep::declare(Arguments& arguments) {
   arguments.count("--frames", frames_, 2, 100'000, "Frames, 1/60 s apart");
   arguments.number("--from", from_, 0.0, 1.0, "Share of the triangles at the start");
   arguments.number("--to", to_, 0.0, 1.0, "Share of the triangles at the end");
+  arguments.length_m("--perceptual", perceptual_m_,
+                     "Instead of shares: the levels that an eye needs from near to so far away");
   arguments.flag("--and-back", and_back_, "Half of the frames there, half back");
   arguments.choice("--style", style_, {"morph", "hard", "discrete", "fade"}, "How levels follow each other");
   arguments.count("--levels", levels_, 2, 100, "Fixed levels of discrete and fade");
@@ -59,6 +62,7 @@ Result<render::SweepOptions> Sweep::options() const {
                                .from_ratio = from_,
                                .to_ratio = to_,
                                .and_back = and_back_,
+                               .perceptual_m = perceptual_m_,
                                .style = *style,
                                .discrete_levels = levels_,
                                .morph_seconds = morph_s_};

@@ -76,6 +76,10 @@ struct SweepOptions {
   double from_ratio = 1.0;
   double to_ratio = 0.02;
   bool and_back = false;  ///< half of the frames there, half back
+  /// If given, the levels are what an eye needs (equation 17 of perception.h, at the size and field of view of the
+  /// pictures) from where the model just fills them to so many metres away, in equal factors of distance; the two
+  /// ratios do not count.
+  std::optional<double> perceptual_m;
   SweepStyle style = SweepStyle::Morph;
   std::uint32_t discrete_levels = 5;  ///< Discrete, Fade: from `from_ratio` to `to_ratio` in equal factors
   double morph_seconds = 2.0;         ///< Morph: time that a record takes

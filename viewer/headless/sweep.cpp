@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <lodestone/metrics.h>
+#include <lodestone/perception.h>
 
 #include "stage.h"
 
@@ -12,15 +13,27 @@ namespace {
 
 constexpr double frame_step_s = 1.0 / 60.0;
 
-// Wanted share of the source's triangles at every frame, and the fixed levels on the same scale. Position 0 is `from`,
-// 1 is `to`; equal steps of position are equal factors of triangles.
+// Wanted level at every frame, and the fixed levels on the same scale. Position 0 is the start, 1 the end; equal steps
+// of position are equal factors of triangles, or of distance.
 class Schedule {
  public:
-  Schedule(const SweepOptions& options, std::uint32_t source_triangles)
-      : frames_(options.frames),
-        and_back_(options.and_back),
-        from_(std::log(options.from_ratio * source_triangles)),
-        to_(std::log(options.to_ratio * source_triangles)) {}
+  Schedule(const SweepOptions& options, const ProgressiveModel& model, const View& view)
+      : frames_(options.frames), and_back_(options.and_back), model_(model), perceptual_(options.perceptual_m) {
+    if (perceptual_) {
+      focal_px_ = focal_px(view);
+      from_ = std::log(first_of(model, view));
+      to_ = std::log(*options.perceptual_m);
+    } else {
+      const double source_triangles = model.info(model.record_count()).triangles;
+      from_ = std::log(options.from_ratio * source_triangles);
+      to_ = std::log(options.to_ratio * source_triangles);
+    }
+  }
+
+  // Distance at which the model fills the picture.
+  [[nodiscard]] static double first_of(const ProgressiveModel& model, const View& view) {
+    return first_distance_m(0.5 * model.bounds().diagonal_m(), view.fov_y_rad);
+  }
 
   [[nodiscard]] double position(std::uint32_t frame) const {
     const std::uint32_t leg = and_back_ ? (frames_ + 1) / 2 : frames_;
@@ -28,15 +41,20 @@ class Schedule {
     const std::uint32_t step = frame < leg ? frame : frames_ - 1 - frame;
     return static_cast<double>(step) / (leg - 1);
   }
-  [[nodiscard]] std::uint32_t triangles_at(double position) const {
-    return static_cast<std::uint32_t>(std::lround(std::exp(from_ + (to_ - from_) * position)));
+  [[nodiscard]] Level level_at(double position) const {
+    const double wanted = std::exp(from_ + (to_ - from_) * position);
+    if (perceptual_) return model_.level_of_error(imperceptible_error_m(wanted, focal_px_));
+    return model_.level_of_triangles(static_cast<std::uint32_t>(std::lround(wanted)));
   }
 
  private:
   std::uint32_t frames_;
   bool and_back_;
-  double from_;
-  double to_;
+  const ProgressiveModel& model_;
+  bool perceptual_;
+  double focal_px_ = 0.0;
+  double from_ = 0.0;  // logarithms of triangles, or of metres
+  double to_ = 0.0;
 };
 
 // Everything that the styles share: the stage, what is looked at, and the frame they draw into.
@@ -71,14 +89,13 @@ class Continuous final : public Performer {
         schedule_(schedule),
         cursor_(model, {.motion = options.style == SweepStyle::Morph ? Motion::Morph : Motion::Hard,
                         .morph_seconds = options.morph_seconds,
-                        .start_level = model->level_of_triangles(schedule.triangles_at(0.0))}),
+                        .start_level = schedule.level_at(0.0)}),
         geometry_(set.stage.gl(), arrays_of(cursor_)) {
     cursor_.clear_dirty();
   }
 
   void draw(std::uint32_t frame) override {
-    const std::uint32_t triangles = schedule_.triangles_at(schedule_.position(frame));
-    cursor_.set_target(Target::level(set_.model.level_of_triangles(triangles)));
+    cursor_.set_target(Target::level(schedule_.level_at(schedule_.position(frame))));
     if (frame > 0) cursor_.step({}, frame_step_s);
     geometry_.update(cursor_);
     set_.draw(geometry_, set_.frame);
@@ -101,7 +118,7 @@ class Discrete final : public Performer {
       : set_(set), second_(second), schedule_(schedule), fade_frames_(fade_frames) {
     for (std::uint32_t i = 0; i < levels; ++i) {
       const double position = levels == 1 ? 0.0 : static_cast<double>(i) / (levels - 1);
-      const Level level = set.model.level_of_triangles(schedule.triangles_at(position));
+      const Level level = schedule.level_at(position);
       auto& made = levels_.emplace_back(std::make_unique<Fixed>(set.model.extract(level)));
       made->geometry = std::make_unique<Geometry>(set.stage.gl(), made->sorted.arrays());
     }
@@ -230,7 +247,10 @@ Result<SweepReport> sweep(std::shared_ptr<const ProgressiveModel> model, const S
   if (!frame) return frame.error();
   const Surfaces surfaces{gl, model->data()};
   const Set set{**stage, *model, surfaces, *frame, *view, options.render.look};
-  const Schedule schedule{options, model->info(model->record_count()).triangles};
+  if (options.perceptual_m && !(*options.perceptual_m > Schedule::first_of(*model, *view))) {
+    return Error{ErrorCode::BadArgument, "the sweep must end farther away than where the model fills the picture", ""};
+  }
+  const Schedule schedule{options, *model, *view};
 
   Result<SweepReport> report = Error{};
   if (options.style == SweepStyle::Morph || options.style == SweepStyle::Hard) {

@@ -31,6 +31,8 @@
 
 namespace lodestone {
 
+struct DetailFit;
+
 /// Where a cursor should go. The model turns it into a level.
 class Target {
  public:
@@ -48,6 +50,9 @@ class Target {
   [[nodiscard]] static Target perceptual(double distance_m, double focal_px) noexcept {
     return {Kind::ByError, distance_m / (2.0 * focal_px)};
   }
+  /// As much of the detail as is seen from `beyond_m` metres beyond the first distance d1 (equation 11 of
+  /// perception.h): that share of the source's triangles; all of them up to d1.
+  [[nodiscard]] static Target perceptual(const DetailFit& fit, double beyond_m) noexcept;
   /// The coarsest level that deviates by at most `max_error_px` on the screen. With hysteresis: the target stays while
   /// the error of the present target lies within [1 - h, 1 + h] times the limit, so a camera that rests does not
   /// flicker.

@@ -223,6 +223,32 @@ TEST_CASE("pictures for the metric are flat, hard-edged and shrink; what cannot 
   CHECK_FALSE(visible_detail(*tiny, vision).ok());
 }
 
+TEST_CASE("the eye makes of the part that is drawn what it makes of the whole screen") {
+  auto stage = render::DetailStage::create(house(), Display{});
+  REQUIRE(stage.ok());
+  const VisionModel vision{Display{}};
+  for (const double distance_m : {60.0, 200.0}) {
+    const auto part = (*stage)->picture(M_PI, distance_m);
+    REQUIRE(part.ok());
+    const std::uint32_t left = (1280 - part->image.width) / 2;
+    const std::uint32_t top = (1024 - part->image.height) / 2;
+    REQUIRE(left > 0);
+    ObjectPicture whole{Image{1280, 1024, 3, std::vector<std::uint8_t>(1280 * 1024 * 3, 255)},
+                        std::vector<std::uint8_t>(1280 * 1024, 0)};
+    for (std::uint32_t y = 0; y < part->image.height; ++y) {
+      std::copy_n(part->image.at(0, y), std::size_t{3} * part->image.width, whole.image.at(left, top + y));
+      std::copy_n(part->mask.data() + std::size_t{y} * part->image.width, part->image.width,
+                  whole.mask.data() + std::size_t{top + y} * 1280 + left);
+    }
+    const auto in_part = visible_detail(*part, vision);
+    const auto in_whole = visible_detail(whole, vision);
+    REQUIRE(in_part.ok());
+    REQUIRE(in_whole.ok());
+    CHECK(in_part->object_pixels == in_whole->object_pixels);
+    CHECK(in_part->imperceptible_pixels == in_whole->imperceptible_pixels);
+  }
+}
+
 TEST_CASE("options out of range and models without faces are errors that say what is wrong") {
   const auto refused = [](const render::StudyOptions& options) {
     const auto study = render::study_switch_distances(house(), options);
@@ -267,6 +293,28 @@ TEST_CASE("a cursor takes the eye as its target: coarser with distance, half a p
     CHECK(cursor.error_m() <= imperceptible_error_m(distance_m, 1710.0));
     CHECK(cursor.triangle_count() < before);
     before = cursor.triangle_count();
+  }
+}
+
+TEST_CASE("a cursor takes a fit as its target: the share of detail that is seen, everything up to d1") {
+  const auto model = house();
+  const auto total = static_cast<double>(model->triangle_count());
+  DetailFit fit;
+  fit.a = 0.5588;
+  fit.b = -0.09722;
+  fit.c = 0.1908;
+  fit.d = -0.02061;
+  Cursor cursor{model, {.motion = Motion::Hard}};
+  for (const double beyond_m : {-10.0, 0.0}) {
+    cursor.set_target(Target::perceptual(fit, beyond_m));
+    cursor.step({}, 0.0);
+    CHECK(cursor.level() == model->record_count());
+  }
+  for (const double beyond_m : {1.0, 10.0, 40.0}) {
+    cursor.set_target(Target::perceptual(fit, beyond_m));
+    cursor.step({}, 0.0);
+    CHECK(cursor.triangle_count() <= fit(beyond_m) * total);
+    CHECK(cursor.triangle_count() >= fit(beyond_m) * total - 100.0);
   }
 }
 
