@@ -37,7 +37,7 @@ render::Plot metric_plot(const SwitchStudy& study) {
 // What a plan draws: the detail at the beginning of each level, held to its end.
 render::Plot redundancy_plot(const SwitchStudy& study) {
   const double end_m = study.samples.back().distance_m;
-  const auto& switch_m = study.plan.switch_m;
+  const auto& switch_m = study.design.switch_m;
   Curve drawn{"drawn", Curve::Style::Line, render::curve_color(1), {}};
   Curve area{"not seen", Curve::Style::Area, render::curve_color(6), {}};
   for (std::size_t i = 0; i < switch_m.size(); ++i) {
@@ -59,8 +59,8 @@ render::Plot redundancy_plot(const SwitchStudy& study) {
   return plot;
 }
 
-Curve steps_of(const SwitchStudy& study, const SwitchPlan& plan, std::size_t color) {
-  Curve curve{plan.name, Curve::Style::Line, render::curve_color(color), {}};
+Curve steps_of(const SwitchStudy& study, const SwitchPlan& plan, const glm::u8vec3& color) {
+  Curve curve{plan.name, Curve::Style::Line, color, {}};
   for (std::size_t i = 0; i < plan.switch_m.size(); ++i) {
     const double to_m = i + 1 < plan.switch_m.size() ? study.first_m + plan.switch_m[i + 1] : study.last_m;
     curve.points.emplace_back(study.first_m + plan.switch_m[i], plan.triangles[i]);
@@ -75,11 +75,13 @@ render::Plot triangle_plot(const SwitchStudy& study, const ProgressiveModel& mod
                     .x_title = "distance, m",
                     .y_title = "triangles",
                     .x_axis = render::Axis::Logarithmic,
-                    .y_axis = render::Axis::Logarithmic};
+                    .y_axis = render::Axis::Logarithmic,
+                    .legend = render::LegendCorner::BottomLeft};
   for (std::size_t i = study.alternatives.size(); i-- > 0;) {
-    plot.curves.push_back(steps_of(study, study.alternatives[i], 2 + i));
+    plot.curves.push_back(steps_of(study, study.alternatives[i], render::curve_color(2 + i)));
   }
-  plot.curves.push_back(steps_of(study, study.plan, 0));
+  plot.curves.push_back(steps_of(study, study.design, render::curve_color(0)));
+  plot.curves.push_back(steps_of(study, study.measured, glm::u8vec3{0}));
   Curve continuous{"continuous", Curve::Style::Line, render::curve_color(1), {}};
   for (int i = 0; i <= curve_steps; ++i) {
     const double distance_m = study.first_m * std::pow(study.last_m / study.first_m, double(i) / curve_steps);

@@ -182,19 +182,26 @@ class Canvas {
   }
 
   void draw_legend() {
+    constexpr double row_px = 18.0;
     std::size_t longest = 0;
-    for (const Curve& curve : plot_.curves) longest = std::max(longest, curve.name.size());
-    const double x = right() - 12.0 - static_cast<double>(longest * letter_px);
-    double y = top_px + 10.0;
+    std::size_t rows = 0;
+    for (const Curve& curve : plot_.curves) {
+      longest = std::max(longest, curve.name.size());
+      if (!curve.name.empty()) ++rows;
+    }
+    const double text_px = static_cast<double>(longest * letter_px) + 12.0;
+    const bool low = plot_.legend == LegendCorner::BottomLeft;
+    const double x = low ? left_px + 46.0 : right() - text_px;
+    double y = low ? bottom() - 10.0 - row_px * static_cast<double>(rows) : top_px + 10.0;
     for (const Curve& curve : plot_.curves) {
       if (curve.name.empty()) continue;
-      line({x - 34.0, y + 7.0}, {right(), y + 7.0}, glm::u8vec3{255}, 17.0);  // curves do not run through the text
       const double middle = y + 7.0;
+      line({x - 34.0, middle}, {x + text_px, middle}, glm::u8vec3{255}, 17.0);  // curves do not run through the text
       if (curve.style == Curve::Style::Dots) line({x - 20.0, middle}, {x - 20.0, middle}, curve.color, 5.0);
       if (curve.style == Curve::Style::Line) line({x - 32.0, middle}, {x - 10.0, middle}, curve.color, 2.0);
       if (curve.style == Curve::Style::Area) line({x - 30.0, middle}, {x - 12.0, middle}, curve.color, 8.0);
       write(x, y, curve.name);
-      y += 18.0;
+      y += row_px;
     }
   }
 

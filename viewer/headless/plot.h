@@ -12,6 +12,8 @@
 
 namespace lodestone::render {
 
+enum class LegendCorner : std::uint8_t { TopRight, BottomLeft };
+
 enum class Axis : std::uint8_t { Linear, Logarithmic };
 
 /// One curve. Points that are not finite, or not above 0 on a logarithmic axis, are left out.
@@ -34,6 +36,7 @@ struct Plot {
   std::string y_title;
   Axis x_axis = Axis::Linear;
   Axis y_axis = Axis::Linear;
+  LegendCorner legend = LegendCorner::TopRight;
   std::vector<Curve> curves;  ///< drawn in order
   std::uint32_t width_px = 900;
   std::uint32_t height_px = 560;

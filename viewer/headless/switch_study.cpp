@@ -226,7 +226,7 @@ Status Studying::refine_levels() {
   study_.measured = study_.plan;
   study_.measured_check = study_.plan_check;
   SwitchPlan& plan = study_.measured;
-  plan.name += ", measured";
+  plan.name = "measured";
   for (std::size_t i = plan.levels.size(); i-- > 0;) {
     LevelCheck& check = study_.measured_check.levels[i];
     const Level farther = i + 1 < plan.levels.size() ? plan.levels[i + 1] : 0;

@@ -68,7 +68,7 @@ void move_idle_switches(SwitchPlan& plan, const DetailFit& fit, const Progressiv
     plan.switch_m.insert(std::upper_bound(plan.switch_m.begin(), plan.switch_m.end(), beyond_m), beyond_m);
     add_cost(plan, model, first_m, last_m, focal_px);
   }
-  if (plan.switch_m != designed_m) plan.name += ", idle moved";
+  if (plan.switch_m != designed_m) plan.name = "idle switches moved";
   plan.redundancy = redundancy(fit, plan.switch_m, last_m);
 }
 
