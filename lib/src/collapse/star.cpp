@@ -6,6 +6,13 @@ namespace {
 
 bool inside(Range region, std::uint32_t p) { return p - region.begin < region.end - region.begin; }
 
+// Most of the time here is waiting for faces, so all are asked for before the first is looked at.
+void fetch_faces(const WorkingMesh& mesh, std::uint32_t point) {
+  for (std::uint32_t i = mesh.first[point]; i != mesh.first[point + 1]; ++i) {
+    __builtin_prefetch(&mesh.faces[mesh.corners[i] >> 2U]);
+  }
+}
+
 // Adds the faces at one end; those on the edge only when seen from u.
 bool add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Range region, Star& star) {
   const glm::dvec3 origin{mesh.position[star.u]};
@@ -40,6 +47,8 @@ bool gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Rang
   star.lines.clear();
   star.shared = 0;
   star.plain = ((mesh.flags[u] | mesh.flags[v]) & (point_border | point_complex | point_line)) == 0;
+  fetch_faces(mesh, u);
+  fetch_faces(mesh, v);
   if (!add_faces(mesh, u, true, region, star)) return false;
   star.faces_of_u = static_cast<std::uint32_t>(star.faces.size());
   if (!add_faces(mesh, v, false, region, star)) return false;
