@@ -43,7 +43,7 @@ Status Clusters::run(Session& session) {
   if (output_.extension() != ".lodg") {
     return Error{ErrorCode::BadArgument, "cluster graphs are written as .lodg files", output_.string()};
   }
-  auto loaded = input_.read(session, LoadTextures::Reference);
+  auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   build_.error = error_ == "area" ? ErrorMeasure::Area : ErrorMeasure::Distance;
   build_.attributes = attributes_ == "none" ? Attributes::None : Attributes::All;

@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include <lodestone/cluster_file.h>
+
 #include "reader.h"
 #include "tidy.h"
 
@@ -62,6 +64,21 @@ Result<LoadedMesh> read_finest_level(const std::filesystem::path& file, const Co
   return {std::move(loaded), std::move(model.warnings())};
 }
 
+// The leaves of a cluster graph, put together again.
+Result<LoadedMesh> read_leaves(const std::filesystem::path& file, const Context& context) {
+  auto graph = read_cluster_graph(file, context);
+  if (!graph) return graph.error();
+  std::vector<NodeId> leaves;
+  for (const LodLink& link : graph->graph.links) {
+    for (NodeId n = link.nodes.begin; link.maker == none && n != link.nodes.end; ++n) leaves.push_back(n);
+  }
+  LoadedMesh loaded;
+  loaded.mesh = extract(*graph, leaves);
+  merge_identical_vertices(loaded.mesh);
+  loaded.info = {.format = "lodg", .up_axis = "Z", .unit_m = 1.0};
+  return loaded;
+}
+
 }  // namespace
 
 ReadFunction find_reader(const Input& input) {
@@ -100,6 +117,7 @@ Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOption
   auto input = Input::open(file, options.max_file_bytes);
   if (!input) return input.error();
   if (is_model_file(file)) return read_finest_level(file, context);
+  if (is_cluster_file(file)) return read_leaves(file, context);
   return read_input(*input, options, context);
 }
 

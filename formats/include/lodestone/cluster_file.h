@@ -33,7 +33,8 @@ struct ClusterFileSize {
   std::uint64_t page_bytes_max = 0;  ///< unpacked; at most 128 KB
 };
 
-/// Normals are stored with 8 bits per octahedral coordinate, uvs in steps of 1/16384. Textures are referred to by path.
+/// Normals are stored with 8 bits per octahedral coordinate, uvs in steps of 1/16384. Textures that
+/// are files of their own are referred to by path, others embedded.
 [[nodiscard]] Result<ClusterFileSize> write_cluster_graph(const ClusterGraph& graph, const std::filesystem::path& file,
                                                           const ClusterWriteOptions& options = {},
                                                           const Context& context = {});

@@ -75,12 +75,17 @@ void describe(F& fields, PageEntry& p) {
 }
 
 template <class F>
+void describe(F& fields, TextureEntry& t) {
+  fields.all(t.texture, t.bytes, t.checksum);
+}
+
+template <class F>
 void describe(F& fields, Header& h) {
   ClusterGraph& o = h.outline;
   fields.all(h.generator, o.origin.x, o.origin.y, o.origin.z, o.crs, h.normals, h.uvs, h.colors);
   fields.all(h.grid.bits, h.grid.corner.x, h.grid.corner.y, h.grid.corner.z, h.grid.step_m);
   fields.all(o.materials, o.textures, o.features, o.graph, o.clusters, o.sections, o.face_features, o.levels, o.roots,
-             h.pages);
+             h.pages, h.textures);
 }
 
 namespace {
@@ -101,6 +106,9 @@ class Check {
     if (!pages_ok()) return "the pages do not hold the nodes in order";
     for (const ClusterRoot& root : outline_.roots) {
       if (root.node >= outline_.clusters.size()) return "a root is no node";
+    }
+    for (const TextureEntry& entry : header_.textures) {
+      if (entry.texture >= outline_.textures.size()) return "an embedded texture has no name";
     }
     for (const Material& material : outline_.materials) {
       if (material.texture != none && material.texture >= outline_.textures.size())

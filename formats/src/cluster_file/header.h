@@ -35,12 +35,20 @@ struct PageEntry {
   Range nodes;
 };
 
+// The bytes of an image file, behind the pages.
+struct TextureEntry {
+  std::uint32_t texture = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;
+};
+
 struct Header {
   std::string generator;
   bool normals = false, uvs = false, colors = false;
   Grid grid;
   ClusterGraph outline;  // without vertices, indices and targets
   std::vector<PageEntry> pages;
+  std::vector<TextureEntry> textures;  // in file order
 };
 
 [[nodiscard]] Bytes write_header(const Header& header);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "cluster_file/page_codec.h"
 #include "reader.h"
@@ -41,6 +42,22 @@ std::vector<std::uint32_t> count_made(const ClusterGraph& outline) {
   return made;
 }
 
+// Those that lie behind the pages.
+std::optional<Error> read_textures(const Input& input, std::uint64_t pages_at, Header& header) {
+  std::uint64_t at = pages_at;
+  if (!header.pages.empty()) at += header.pages.back().offset + header.pages.back().stored_bytes;
+  for (const TextureEntry& entry : header.textures) {
+    if (at > input.size() || entry.bytes > input.size() - at) return fault(input, "the file ends inside a texture");
+    auto bytes = std::make_shared<std::vector<std::uint8_t>>(entry.bytes);
+    if (input.read(at, *bytes) != bytes->size() || model_file::checksum(*bytes) != entry.checksum) {
+      return fault(input, "an embedded texture is damaged");
+    }
+    header.outline.textures[entry.texture].encoded = std::move(bytes);
+    at += entry.bytes;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 ClusterFile::ClusterFile(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -73,6 +90,7 @@ Result<std::shared_ptr<const ClusterFile>> ClusterFile::open(const std::filesyst
   state->pages_at = size;
   state->group_of = groups_of_nodes(header.outline.graph);
   state->made_vertices = count_made(header.outline);
+  if (auto wrong = read_textures(*input, size, state->header)) return *wrong;
   for (Texture& texture : state->header.outline.textures) {
     if (texture.path.empty()) continue;
     if (const auto beside = find_beside(file.parent_path(), texture.path)) texture.path = beside->string();

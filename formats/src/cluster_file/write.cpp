@@ -26,6 +26,7 @@ class Writer {
 
   Result<ClusterFileSize> write(const std::filesystem::path& file) {
     describe();
+    describe_textures(file);
     if (Status status = fill_pages(); !status.ok()) return status.error();
     keep_promises(header_.outline.graph);
     auto out = OutputFile::create(file);
@@ -37,6 +38,11 @@ class Writer {
       out->write(packed_[p].data(), packed_[p].size());
       size.file_bytes += packed_[p].size();
       size.page_bytes_max = std::max<std::uint64_t>(size.page_bytes_max, header_.pages[p].raw_bytes);
+    }
+    for (const TextureEntry& entry : header_.textures) {
+      const auto& bytes = *graph_.textures[entry.texture].encoded;
+      out->write(bytes.data(), bytes.size());
+      size.file_bytes += bytes.size();
     }
     if (const Status done = out->commit(); !done.ok()) return done.error();
     return size;
@@ -57,10 +63,6 @@ class Writer {
     header_.grid.step_m = longest / (std::exp2(options_.position_bits) - 1.0);
     ClusterGraph& outline = header_.outline;
     static_cast<Surroundings&>(outline) = graph_;
-    for (Texture& texture : outline.textures) {
-      texture.encoded.reset();
-      texture.image.reset();
-    }
     outline.graph = graph_.graph;
     outline.levels = graph_.levels;
     outline.roots = graph_.roots;
@@ -71,6 +73,21 @@ class Writer {
     for (ClusterLevel& level : outline.levels) level.error_m += half_cell_m;
     outline.graph.parts.clear();
     number_targets();
+  }
+
+  // Files beside stay where they are; what came inside another file goes inside this one.
+  void describe_textures(const std::filesystem::path& file) {
+    for (std::uint32_t i = 0; i < graph_.textures.size(); ++i) {
+      Texture& texture = header_.outline.textures[i];
+      texture.encoded.reset();
+      texture.image.reset();
+      const auto& bytes = graph_.textures[i].encoded;
+      if (!texture.path.empty()) {
+        texture.path = std::filesystem::path{texture.path}.lexically_proximate(file.parent_path()).generic_string();
+      } else if (bytes != nullptr) {
+        header_.textures.push_back({i, bytes->size(), model_file::checksum(*bytes)});
+      }
+    }
   }
 
   // A vertex's place among the vertices of all that its group made.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/cluster_file.h>
+#include <lodestone/formats.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -93,6 +94,22 @@ TEST_CASE("the same file is written again, byte for byte, also from what was rea
   REQUIRE(bytes_of(folder / "a.lodg") == bytes_of(folder / "b.lodg"));
   REQUIRE_FALSE(write_cluster_graph(graph, folder / "c.lodg", {.position_bits = 40}).ok());
   REQUIRE_FALSE(std::filesystem::exists(folder / "c.lodg"));
+}
+
+TEST_CASE("embedded textures travel along; a .lodg file reads as a mesh: its leaves, welded again") {
+  const auto folder = scratch_folder("cluster_file_mesh");
+  Mesh mesh = grid(30, 30);
+  mesh.materials = {Material{.name = "rock", .texture = 0}};
+  const auto bytes = std::make_shared<const std::vector<std::uint8_t>>(1000, std::uint8_t{7});
+  mesh.textures.push_back({.name = "rock.png", .mime_type = "image/png", .encoded = bytes});
+  REQUIRE(write_cluster_graph(graph_of(mesh), folder / "a.lodg", {.position_bits = 20}).ok());
+  const auto loaded = read_mesh(folder / "a.lodg");
+  REQUIRE(loaded.ok());
+  REQUIRE(loaded->mesh.triangle_count() == mesh.triangle_count());
+  REQUIRE(loaded->mesh.vertex_count() == mesh.vertex_count());
+  REQUIRE(*loaded->mesh.textures.at(0).encoded == *bytes);
+  std::filesystem::resize_file(folder / "a.lodg", std::filesystem::file_size(folder / "a.lodg") - 1);
+  REQUIRE_FALSE(read_mesh(folder / "a.lodg").ok());
 }
 
 TEST_CASE("every truncation and every flipped byte is an error, never a crash") {
