@@ -80,8 +80,8 @@ struct FacetShiftResult {
 /// Builds the stack from the source (finest level, bit for bit but for the cuts at T-junctions, see
 /// compare_with_source()) down to the target. Levels are named: "lod3", "lod2"
 /// and "lod1" are the coarsest within 0.5, 2 and 5 m of the source (the positional accuracy that CityGML 2.0 asks of
-/// these), "block" is the base. One thread; the same bytes always. Time about 20 us per source triangle up to some
-/// ten thousand, more beyond; memory about 400 bytes per source triangle. Errors: BadData from validate(mesh),
+/// these), "block" is the base. One thread; the same bytes always. Time about 50 to 80 us per source triangle;
+/// memory about 400 bytes per source triangle. Errors: BadData from validate(mesh),
 /// Cancelled.
 [[nodiscard]] Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShiftOptions& options = {},
                                                             const Context& context = {});

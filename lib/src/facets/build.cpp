@@ -14,6 +14,7 @@
 #include "facets/facet_mesh.h"
 #include "facets/judge.h"
 #include "facets/openings.h"
+#include "facets/outline.h"
 #include "facets/parts.h"
 #include "facets/plan.h"
 #include "progressive/values.h"
@@ -80,6 +81,7 @@ class Builder {
   std::vector<std::uint32_t> later_;         // points to be looked at again
   std::array<std::vector<Known>, 2> known_;  // per direction and surface
   FacetShiftReport report_;
+  bool closed_ = false;  // to begin with
 };
 
 void Builder::drop_degenerate() {
@@ -248,7 +250,7 @@ bool Builder::do_job(const OpeningJob& job, double price) {
 bool Builder::close_openings(double price) {
   bool any = false;
   const std::vector<Opening> openings = find_openings(mesh_);
-  const Niches niches{mesh_};
+  const Niches niches{mesh_, closed_};
   for (const Opening& opening : openings) {
     if (done()) break;
     if (const auto job = niches.flatten(opening); job && do_job(*job, price)) {
@@ -270,6 +272,11 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     report_.openings += s.kind == SurfaceClass::Opening ? 1 : 0;
   }
   drop_degenerate();
+  std::vector<FaceId> live;
+  for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
+    if (mesh_.faces[f].live) live.push_back(f);
+  }
+  closed_ = outline(mesh_, live).empty();
   for (auto& known : known_) known.resize(mesh_.surface_faces.size());
   for (std::uint32_t p = 0; p < mesh_.point_count() && !context_.cancelled(); ++p) offer(p);
   double area = 0.0;

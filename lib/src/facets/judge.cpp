@@ -200,7 +200,7 @@ void judge_loss(const FacetMesh& mesh, const Face& face, std::uint32_t u, std::u
 void add_deviation(const FacetMesh& mesh, std::span<const Move> moves, Verdict& verdict) {
   double before = 0.0;
   for (const Move& m : moves) before = std::max(before, double{mesh.deviation_m[m.point]});
-  verdict.error_m += before;
+  verdict.error_m = std::hypot(verdict.error_m, before);
 }
 
 }  // namespace

@@ -145,6 +145,11 @@ bool is_side(const Opening& opening, std::uint32_t a, std::uint32_t b) {
   return false;
 }
 
+bool is_behind(const FacetMesh& mesh, const Face& face, const Plane& plane) {
+  return std::all_of(face.point.begin(), face.point.end(),
+                     [&](std::uint32_t p) { return plane.height(mesh.at(p)) < plane_m; });
+}
+
 // Whether the faces run between the corners of the hole already.
 bool is_sewn(const FacetMesh& mesh, const Opening& opening, const std::vector<FaceId>& faces) {
   return faces.size() + 2 == opening.loop.size() && std::all_of(faces.begin(), faces.end(), [&](FaceId f) {
@@ -213,12 +218,17 @@ class PaneMaker {
   // Of the material that shows most, largest first.
   bool choose_faces(std::size_t count) {
     std::vector<double> shown(mesh_.source->materials.size(), 0.0);
+    std::vector<double> hidden(shown.size(), 0.0);
     std::vector<std::size_t> faces(shown.size(), 0);
     for (const FaceId f : content_) {
       const MaterialId m = mesh_.source->face_material(f);
       ++faces[m];
-      if (std::abs(glm::dot(mesh_.faces[f].normal, plane_.normal)) > facing_cosine) shown[m] += area(mesh_, f);
+      // Frames are boxes, panes are sheets that may turn either way: one of the two counts.
+      const double facing = glm::dot(mesh_.faces[f].normal, plane_.normal);
+      if (facing > facing_cosine) shown[m] += area(mesh_, f);
+      if (facing < -facing_cosine) hidden[m] += area(mesh_, f);
     }
+    for (std::size_t m = 0; m < shown.size(); ++m) shown[m] = std::max(shown[m], hidden[m]);
     std::size_t best = shown.size();
     for (std::size_t m = 0; m < shown.size(); ++m) {
       if (faces[m] >= count && shown[m] > 0.0 && (best == shown.size() || shown[m] > shown[best])) best = m;
@@ -413,8 +423,9 @@ std::vector<Opening> find_openings(const FacetMesh& mesh) {
   return openings;
 }
 
-Niches::Niches(const FacetMesh& mesh)
+Niches::Niches(const FacetMesh& mesh, bool closed)
     : mesh_(mesh),
+      closed_(closed),
       face_of_([&] {
         std::vector<FaceId> live;
         for (FaceId f = 0; f < mesh.faces.size(); ++f) {
@@ -469,20 +480,21 @@ std::optional<OpeningJob> Niches::flatten(const Opening& opening) const {
     if (facing < -facing_cosine) back += a;
     job.cost += a * mean_square(h(0), h(1), h(2));
     job.error_m = std::max({job.error_m, std::abs(h(0)), std::abs(h(1)), std::abs(h(2))});
-    // Nothing outside may hang on what goes.
+    // Nothing outside may hang on what goes, unless it is hidden by the pane and the model is open anyway.
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a0 = face.point[k];
       const std::uint32_t b0 = face.point[k == 2 ? 0 : k + 1];
       const bool on_loop = is_side(opening, a0, b0) || is_side(opening, b0, a0);
       if (on_loop) continue;
       for (const FaceId other : mesh_.faces_of[a0]) {
-        if (has_point(mesh_.faces[other], b0) && !contains(content, other)) return std::nullopt;
+        if (!has_point(mesh_.faces[other], b0) || contains(content, other)) continue;
+        if (closed_ || !is_behind(mesh_, mesh_.faces[other], plane)) return std::nullopt;
       }
     }
   }
   if (std::max(front, back) < covered * opening.area_m2 || is_sewn(mesh_, opening, content)) return std::nullopt;
   if (!PaneMaker{mesh_, opening, plane, content}.run(job.patch)) return std::nullopt;
-  job.error_m += most_deviation(mesh_, content);
+  job.error_m = std::hypot(job.error_m, most_deviation(mesh_, content));
   return job;
 }
 
@@ -512,7 +524,7 @@ std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
   // As wide as a square of its area and outline.
   const double size = 2.0 * opening.area_m2 / opening.perimeter_m;
   job.cost = (filling.empty() ? 1.0 : look_weight) * opening.area_m2 * size * size / 3.0;
-  job.error_m = size + std::max(most_deviation(mesh, around), most_deviation(mesh, filling));
+  job.error_m = std::hypot(size, std::max(most_deviation(mesh, around), most_deviation(mesh, filling)));
   // The outline shrinks into its first corner.
   const auto shrink = [&](const std::vector<FaceId>& faces) {
     std::vector<Merged> first;

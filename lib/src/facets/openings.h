@@ -38,11 +38,13 @@ struct OpeningJob {
 // is flush.
 class Niches {
  public:
-  explicit Niches(const FacetMesh& mesh);
+  // A closed model is to stay closed.
+  Niches(const FacetMesh& mesh, bool closed);
   [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening) const;
 
  private:
   const FacetMesh& mesh_;
+  bool closed_;
   std::vector<FaceId> face_of_;  // of the tree's faces
   TriangleBvh tree_;
 };

@@ -107,7 +107,7 @@ void measure(const FacetMesh& mesh, const Rest& rest, std::uint32_t id, double l
     for (const std::uint32_t q : face.point) deviation = std::max(deviation, double{mesh.deviation_m[q]});
     part.cost += 0.5 * glm::length(mesh.area_vector(face)) * sum / static_cast<double>(samples.size());
   }
-  part.error_m += deviation;
+  part.error_m = std::hypot(part.error_m, deviation);
 }
 
 }  // namespace

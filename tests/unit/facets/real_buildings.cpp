@@ -49,11 +49,13 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
       REQUIRE(distance.ok());
       deviation_deg[i] += glm::degrees(distance->normal_deviation_rad);
       rms_ppm[i] += 1e6 * distance->rms_m / distance->diagonal_m;
+      // The claim bounds what a sampler finds.
+      CHECK(distance->p999_m <= built->model->error_m(built->model->level_of_triangles(wanted)) + 1e-3);
     }
   }
   REQUIRE(rich == 30);
   constexpr std::array<double, 4> most_deg{0.1, 0.12, 0.1, 0.3};
-  constexpr std::array<double, 4> most_ppm{125.0, 300.0, 560.0, 1250.0};
+  constexpr std::array<double, 4> most_ppm{150.0, 300.0, 520.0, 1250.0};
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     CAPTURE(ratios[i]);
     CHECK(deviation_deg[i] / rich < most_deg[i]);
