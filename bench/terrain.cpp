@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Tiles of 257 x 257 posts cut from an SRTM file, one thread, greedy insertion at 1, 5 and 10 m: samples per second of
-// processor time, triangles, true error. bench/terrain_delatin.mjs does the same with npm's delatin.
+// Tiles of 257 x 257 posts cut from an SRTM file, one thread, greedy insertion and edge collapse at 1, 5 and 10 m:
+// samples per second of processor time, triangles, true error. bench/terrain_delatin.mjs does the same with npm's
+// delatin.
 //
 //   bench_terrain N30E079.hgt
 #include <lodestone/terrain.h>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "terrain/chains.h"
+#include "terrain/edge_collapse.h"
 #include "terrain/error.h"
 #include "terrain/greedy.h"
 #include "thread_clock.h"
@@ -51,27 +53,37 @@ std::vector<TileLattice> read_tiles(const std::string& file) {
   return tiles;
 }
 
-void bench(const std::vector<TileLattice>& tiles, double tolerance_m) {
+enum class Method { Greedy, Collapse };
+
+Tin make(const TileLattice& lattice, double tolerance_m, double step_m, Method method) {
+  std::vector<Post> chain;
+  for (const Side side : all_sides) {
+    for (const int t : border_chain(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(post_of(side, t));
+  }
+  if (method == Method::Greedy) {
+    return greedy_insertion(lattice, chain, {.tolerance_m = tolerance_m, .step_m = step_m}).tin;
+  }
+  const Tin fine = greedy_insertion(lattice, chain, {.tolerance_m = 0.75 * tolerance_m, .step_m = step_m}).tin;
+  return collapse_edges(fine, lattice, {.limit_m = tolerance_m + 0.5 * step_m, .step_m = step_m});
+}
+
+void bench(const std::vector<TileLattice>& tiles, double tolerance_m, Method method) {
   const double step_m = std::max(0.25, std::exp2(std::floor(std::log2(tolerance_m / 32.0))));
-  std::size_t triangles = 0, border = 0;
+  std::size_t triangles = 0;
   double seconds = 0.0, worst_m = 0.0;
   for (const TileLattice& lattice : tiles) {
     const double start = thread_seconds();
-    std::vector<Post> chain;
-    for (const Side side : all_sides) {
-      for (const int t : border_chain(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(post_of(side, t));
-    }
-    const auto [tin, error] = greedy_insertion(lattice, chain, {.tolerance_m = tolerance_m, .step_m = step_m});
+    const Tin tin = make(lattice, tolerance_m, step_m, method);
     seconds += thread_seconds() - start;
-    worst_m = std::max(worst_m, error.max_m);
+    worst_m = std::max(worst_m, measure(tin, lattice, tolerance_m).max_m);
     triangles += tin.triangles.size() / 3;
-    border += chain.size();
   }
   const double samples = static_cast<double>(tiles.size()) * size * size;
   std::printf(
-      "{\"peer\": \"lodestone\", \"tolerance_m\": %g, \"tiles\": %zu, \"triangles\": %zu, \"border_vertices\": %zu, "
-      "\"true_error_m\": %.4f, \"samples_per_second\": %.0f}\n",
-      tolerance_m, tiles.size(), triangles, border, worst_m, samples / seconds);
+      "{\"method\": \"%s\", \"tolerance_m\": %g, \"tiles\": %zu, \"triangles\": %zu, \"true_error_m\": %.4f, "
+      "\"samples_per_second\": %.0f}\n",
+      method == Method::Greedy ? "greedy" : "edge-collapse", tolerance_m, tiles.size(), triangles, worst_m,
+      samples / seconds);
 }
 
 }  // namespace
@@ -82,6 +94,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   const std::vector<TileLattice> tiles = read_tiles(argv[1]);
-  for (const double tolerance_m : {1.0, 5.0, 10.0}) bench(tiles, tolerance_m);
+  for (const Method method : {Method::Greedy, Method::Collapse}) {
+    for (const double tolerance_m : {1.0, 5.0, 10.0, 40.0}) bench(tiles, tolerance_m, method);
+  }
   return 0;
 }

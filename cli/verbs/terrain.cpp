@@ -32,6 +32,7 @@ class Terrain final : public Verb {
   std::string method_ = "greedy";
   std::optional<std::string> max_error_;
   std::optional<std::uint32_t> max_zoom_;
+  std::uint32_t edges_ = 0;
   std::string nodata_ = "skip";
   double fill_m_ = 0.0;
   double scale_ = 1.0;
@@ -46,10 +47,11 @@ void Terrain::declare(Arguments& arguments) {
   arguments.file("RASTER", raster_, "Heights: GeoTIFF, HGT, netCDF, ASCII grid, VRT", Need::Required);
   arguments.file("-o,--output", output_, "Folder to write; empty, or with --resume one begun before", Need::Required);
   arguments.choice("--as", format_, {"quantized-mesh", "3dtiles"}, "What clients read");
-  arguments.choice("--method", method_, {"greedy"}, "How tiles are simplified");
+  arguments.choice("--method", method_, {"greedy", "edge-collapse"}, "How tiles are simplified");
   arguments.text("--max-error", max_error_,
                  "Largest error in height at the finest zoom, doubled per zoom above; or one by zoom from 0 on: "
                  "80m,40m,20m (default: a sixteenth of the spacing of posts)");
+  arguments.count("--target-edges", edges_, 0, none, "Edge collapse: edges of a tile; 0 = by --max-error");
   arguments.count("--max-zoom", max_zoom_, 0, max_terrain_zoom, "Finest zoom (default: as dense as the raster)");
   arguments.choice("--nodata", nodata_, {"skip", "fill", "interpolate"}, "What becomes of missing samples");
   arguments.number("--fill", fill_m_, -20000.0, 20000.0, "Height for --nodata fill, outside the raster as well");
@@ -72,6 +74,8 @@ Result<RasterOptions> Terrain::raster_options() const {
 Result<TerrainOptions> Terrain::terrain_options() const {
   TerrainOptions options;
   if (max_zoom_) options.max_zoom = *max_zoom_;
+  if (method_ == "edge-collapse") options.method = TerrainMethod::EdgeCollapse;
+  if (edges_ > 0) options.target_edges = {edges_};
   options.sea_level_m = sea_level_m_.value_or(quiet_nan);
   if (!max_error_) return options;
   for (std::size_t begin = 0; begin <= max_error_->size();) {

@@ -88,17 +88,8 @@ class HeightSource {
 };
 
 enum class TerrainMethod {
-  Greedy,           ///< Greedy insertion (Garland and Heckbert): fewest triangles for an error in height, fast.
-  EdgeCollapse,     ///< Collapses a finer TIN (Lindstrom and Turk): fewer triangles still, slower.
-  PointsRandom,     ///< A share of the posts at random.
-  PointsGrid,       ///< One post from each cell of a grid.
-  PointsHierarchy,  ///< Clusters split until small and flat (Pauly et al.).
-  PointsWlop,       ///< Weighted locally optimal projection: regular and smooth, for noisy data.
-};
-
-enum class TileBorders {
-  Nested,  ///< Each zoom has chains of its own that contain those of the zoom above: fewest vertices.
-  Shared,  ///< One chain for all zooms in TerrainOptions::shared_zooms: no gap between these zooms.
+  Greedy,        ///< Greedy insertion (Garland and Heckbert): fewest triangles for an error in height, fast.
+  EdgeCollapse,  ///< Collapses a finer TIN (Lindstrom and Turk): fewer triangles still, slower.
 };
 
 struct TerrainOptions {
@@ -111,23 +102,14 @@ struct TerrainOptions {
   /// Fewest cells along a tile's side (power of two, at most 64) by zoom, so that a globe stays round; the last value
   /// holds for finer zooms. Empty: as many as keep the ellipsoid within the tolerance.
   std::vector<std::uint32_t> grid_divisions;
-  TileBorders borders = TileBorders::Nested;
 
   /// EdgeCollapse: stop at so many edges a tile, as the paper does, by zoom (the last value holds for finer ones).
   /// Empty: stop by max_error_m.
   std::vector<std::uint32_t> target_edges;
-  /// EdgeCollapse: weights of Lindstrom and Turk's cost; defaults from the paper.
+  /// EdgeCollapse: weights of Lindstrom and Turk's cost, in coordinates scaled to the unit cube; defaults from the
+  /// paper.
   double volume_weight = 0.5;
-  double boundary_weight = 0.5;
   double shape_weight = 1e-10;
-
-  /// Points*: share of the posts to keep, 0..1; the grid's cell and the cluster's size follow from it.
-  double keep_ratio = 0.015;
-  /// PointsHierarchy: a cluster flatter than this (surface variation) is not split.
-  double max_variation = 1e-4;
-  /// PointsWlop: neighbourhood radius in spacings of kept points, and rounds.
-  double wlop_radius = 3.0;
-  std::uint32_t wlop_rounds = 15;
 
   /// Posts at or below this height are water (a mask is made), NaN: no mask.
   double sea_level_m = std::numeric_limits<double>::quiet_NaN();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "terrain/chains.h"
+#include "terrain/edge_collapse.h"
 #include "terrain/globe.h"
 
 namespace lodestone {
@@ -75,8 +76,28 @@ std::vector<Post> TileBuilder::fixed_posts() const {
 
 MeasuredTin TileBuilder::make_tin() const {
   const std::vector<Post> inside = fixed_posts();
-  return greedy_insertion(lattice_, border_,
-                          {.tolerance_m = zoom_.tolerance_m, .step_m = zoom_.step_m, .inside = inside});
+  const GreedyOptions greedy{.tolerance_m = zoom_.tolerance_m, .step_m = zoom_.step_m, .inside = inside};
+  if (pyramid_.options_.method == TerrainMethod::Greedy) return greedy_insertion(lattice_, border_, greedy);
+  return collapsed(greedy);
+}
+
+// Begins with a TIN that is finer than asked: what it has too many of, collapsing removes from the best places.
+MeasuredTin TileBuilder::collapsed(GreedyOptions greedy) const {
+  const TerrainOptions& options = pyramid_.options_;
+  constexpr double finer_by_error = 0.75, finer_by_count = 0.125;
+  greedy.tolerance_m *= zoom_.target_edges == 0 ? finer_by_error : finer_by_count;
+  const MeasuredTin fine = greedy_insertion(lattice_, border_, greedy);
+  const double limit_m = zoom_.tolerance_m + 0.5 * zoom_.step_m;
+  MeasuredTin made;
+  made.tin = collapse_edges(fine.tin, lattice_,
+                            {.limit_m = limit_m,
+                             .target_edges = zoom_.target_edges,
+                             .step_m = zoom_.step_m,
+                             .volume_weight = options.volume_weight,
+                             .shape_weight = options.shape_weight,
+                             .fixed = greedy.inside});
+  made.error = measure(made.tin, lattice_, limit_m);
+  return made;
 }
 
 // The smallest power of two that spans the tile, no finer than what a client's 32-bit floats tell apart. Heights are

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "heights.h"
 #include "terrain/chains.h"
 #include "terrain/delaunay.h"
+#include "terrain/edge_collapse.h"
 #include "terrain/greedy.h"
 
 using namespace lodestone;
@@ -115,4 +118,42 @@ TEST_CASE("no triangle covers a cell without data, and all others are covered") 
     }
   }
   CHECK(area == cells);
+}
+
+TEST_CASE("edge collapse needs fewer triangles than greedy insertion for the same error, and keeps the border") {
+  const TileLattice lattice = hills();
+  const double tolerance_m = 25.0;
+  const auto border = all_borders(lattice, tolerance_m);
+  const Tin greedy = greedy_insertion(lattice, border, {tolerance_m, 0.25}).tin;
+  const Tin fine = greedy_insertion(lattice, border, {0.75 * tolerance_m, 0.25}).tin;
+  const Tin tin = collapse_edges(fine, lattice, {.limit_m = tolerance_m, .step_m = 0.25});
+  const TinError error = measure(tin, lattice, tolerance_m);
+  CHECK(error.sound);
+  CHECK(error.max_m <= tolerance_m);
+  CHECK(error.covered_count == 257 * 257);
+  CHECK(10 * tin.triangles.size() < 9 * greedy.triangles.size());
+  const auto on_border = [](const Tin& of) {
+    std::vector<std::array<double, 3>> places;
+    for (const Tin::Vertex& v : of.vertices) {
+      if (v.u == 0 || v.v == 0 || v.u == quantized_max || v.v == quantized_max) {
+        places.push_back({static_cast<double>(v.u), static_cast<double>(v.v), v.height_m});
+      }
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+  };
+  CHECK(on_border(tin) == on_border(fine));
+}
+
+TEST_CASE("edge collapse by count stops at the number of edges") {
+  const TileLattice lattice = hills();
+  const Tin fine = greedy_insertion(lattice, all_borders(lattice, 50.0), {5.0, 0.25}).tin;
+  const Tin tin = collapse_edges(fine, lattice, {.target_edges = 2000, .step_m = 0.25});
+  const TinError error = measure(tin, lattice, 1e9);
+  CHECK(error.sound);
+  CHECK(error.covered_count == 257 * 257);
+  const std::size_t border = all_borders(lattice, 50.0).size() - 4;  // corners are there twice
+  const std::size_t edges = (tin.triangles.size() + border) / 2;
+  CHECK(edges <= 2000);
+  CHECK(edges > 1990);
 }
