@@ -228,12 +228,8 @@ class TerrainPlanner {
       add(zoom.target_edges);
     }
     add(static_cast<double>(options_.method));
-    add(static_cast<double>(options_.borders));
-    for (const double number :
-         {options_.volume_weight, options_.boundary_weight, options_.shape_weight, options_.keep_ratio,
-          options_.max_variation, options_.wlop_radius, static_cast<double>(options_.wlop_rounds)}) {
-      add(number);
-    }
+    add(options_.volume_weight);
+    add(options_.shape_weight);
     add(std::isnan(options_.sea_level_m) ? std::numeric_limits<double>::infinity() : options_.sea_level_m);
     return hash;
   }
