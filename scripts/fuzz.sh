@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 shift || true
 doors=("$@")
-[ ${#doors[@]} -gt 0 ] || doors=(obj ply gltf assimp cityjson citygml image lode lodg quantized_mesh raster)
+[ ${#doors[@]} -gt 0 ] || doors=(obj ply gltf assimp cityjson citygml image lode lodg quantized_mesh raster tiles)
 
 command -v clang++ >/dev/null || { echo "fuzz.sh: clang++ is missing; install clang and libclang-rt-14-dev" >&2; exit 1; }
 cmake --preset fuzz >/dev/null

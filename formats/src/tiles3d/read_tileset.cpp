@@ -116,20 +116,24 @@ Result<std::span<const std::uint8_t>> payload_of(std::span<const std::uint8_t> b
 
 }  // namespace
 
+Result<Tileset> parse_tileset(std::span<const std::uint8_t> bytes, const std::string& name) {
+  try {
+    return tileset_of(Json::parse(bytes.begin(), bytes.end()));
+  } catch (const Fault& fault) {
+    return Error{ErrorCode::BadData, fault.message, name};
+  } catch (const Json::exception& fault) {
+    return Error{ErrorCode::BadData, std::string{"it is no tileset: "} + fault.what(), name};
+  }
+}
+
 Result<Tileset> read_tileset(const std::filesystem::path& file) {
   const auto input = Input::open(file, most_json_bytes);
   if (!input) return input.error();
   const auto bytes = input->read_all();
   if (!bytes) return bytes.error();
-  try {
-    Tileset tileset = tileset_of(Json::parse(*bytes));
-    tileset.folder = file.parent_path();
-    return tileset;
-  } catch (const Fault& fault) {
-    return Error{ErrorCode::BadData, fault.message, file.string()};
-  } catch (const Json::exception& fault) {
-    return Error{ErrorCode::BadData, std::string{"it is no tileset: "} + fault.what(), file.string()};
-  }
+  auto tileset = parse_tileset(*bytes, file.string());
+  if (tileset) tileset->folder = file.parent_path();
+  return tileset;
 }
 
 bool is_tileset_file(const std::filesystem::path& file) {
@@ -144,18 +148,25 @@ bool is_tileset_file(const std::filesystem::path& file) {
   return text.find("\"geometricError\"") != std::string_view::npos;
 }
 
+Result<Mesh> parse_tile(std::span<const std::uint8_t> bytes, const std::filesystem::path& file,
+                        const ReadOptions& options) {
+  const auto payload = payload_of(bytes, file.string());
+  if (!payload) return payload.error();
+  const Input glb = Input::from_bytes(*payload, file.stem().string() + ".glb", file.parent_path());
+  auto loaded = read_input(glb, options, {});
+  if (!loaded) return Error{loaded.error().code, loaded.error().message, file.string()};
+  return std::move(loaded->mesh);
+}
+
 Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures) {
   const std::filesystem::path file = tileset.folder / tileset.tiles[tile].uri;
   const auto input = Input::open(file, most_tile_bytes);
   if (!input) return input.error();
   const auto bytes = input->read_all();
   if (!bytes) return bytes.error();
-  const auto payload = payload_of(*bytes, file.string());
-  if (!payload) return payload.error();
-  const Input glb = Input::from_bytes(*payload, file.stem().string() + ".glb", file.parent_path());
-  auto loaded = read_input(glb, {.textures = textures}, {});
-  if (!loaded) return Error{loaded.error().code, loaded.error().message, file.string()};
-  return LoadedTile{std::move(loaded->mesh), bytes->size()};
+  auto mesh = parse_tile(*bytes, file, {.textures = textures});
+  if (!mesh) return mesh.error();
+  return LoadedTile{std::move(*mesh), bytes->size()};
 }
 
 }  // namespace lodestone

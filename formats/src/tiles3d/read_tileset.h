@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,15 @@ struct Tileset {
 
 // Boxes, spheres (as the box around them). Errors: BadData for what is missing, out of range, or leaves the folder.
 [[nodiscard]] Result<Tileset> read_tileset(const std::filesystem::path& file);
+[[nodiscard]] Result<Tileset> parse_tileset(std::span<const std::uint8_t> bytes, const std::string& name);
 
 struct LoadedTile {
   Mesh mesh;  // in the frame of the root's content
   std::uint64_t file_bytes = 0;
 };
 // glb or b3dm.
+[[nodiscard]] Result<Mesh> parse_tile(std::span<const std::uint8_t> bytes, const std::filesystem::path& file,
+                                      const ReadOptions& options);
 [[nodiscard]] Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures);
 
 }  // namespace lodestone

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// Tables 2 and 3 and Figures 13 and 16 of Ao et al. 2025 on a mesh at hand.
+//
+//     bench_outcrop build MESH FOLDER RATIO [THREADS]   processor seconds, memory and bytes of a pyramid (0 =
+//     automatic) bench_outcrop load MESH FOLDER                    first picture, and ten distances: monolith beside
+//     pyramid bench_outcrop error MESH                          error over simplification, beside libmeshoptimizer
+//
+// One JSON object per line.
+#include <meshoptimizer.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include <lodestone/edge_collapse.h>
+#include <lodestone/formats.h>
+#include <lodestone/metrics.h>
+#include <lodestone/tile_loader.h>
+#include <lodestone/tileset_writer.h>
+
+#include "viewer/headless/headless.h"
+
+namespace {
+
+using namespace lodestone;
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double peak_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+Mesh read(const char* file, LoadTextures textures) {
+  auto loaded = read_mesh(file, {.textures = textures});
+  if (!loaded) {
+    std::fprintf(stderr, "%s\n", to_line(loaded.error()).c_str());
+    std::exit(2);
+  }
+  return std::move(loaded->mesh);
+}
+
+int build(const char* file, const char* folder, double ratio, unsigned threads) {
+  const double start = wall_seconds();
+  Mesh mesh = read(file, LoadTextures::Reference);
+  const std::size_t images = mesh.textures.size();
+  const auto written = write_outcrop(std::move(mesh), folder, {.pyramid = {.ratio = ratio}}, {.max_workers = threads});
+  if (!written) {
+    std::fprintf(stderr, "%s\n", to_line(written.error()).c_str());
+    return 2;
+  }
+  const double processor = processor_seconds();
+  constexpr double paper_processor_seconds = 8424.0 * 0.096 * 16.0;  // Table 2, Model 1: 9.6 % of 16 threads
+  std::printf(
+      "{\"ratio\": %g, \"triangles\": %u, \"images\": %zu, \"megapixels\": %.0f, \"tiles\": %u, \"levels\": %zu, "
+      "\"megabytes\": %.0f, \"wall_seconds\": %.1f, \"processor_seconds\": %.1f, \"paper_over_ours\": %.1f, "
+      "\"decode_megapixels_per_second\": %.0f, \"resample_megapixels_per_second\": %.0f, "
+      "\"encode_megapixels_per_second\": %.0f, \"geometry_seconds\": %.1f, \"peak_megabytes\": %.0f}\n",
+      ratio, written->source_triangles, images, written->decoded_megapixels, written->tiles, written->levels.size(),
+      1e-6 * static_cast<double>(written->bytes), wall_seconds() - start, processor,
+      paper_processor_seconds / processor, written->decoded_megapixels / written->decode_seconds,
+      written->decoded_megapixels / written->resample_seconds, written->encoded_megapixels / written->encode_seconds,
+      written->geometry_seconds, peak_mb());
+  return 0;
+}
+
+// Ten distances between nearly touching and all of it small, seen from the south.
+int load(const char* file, const char* folder) {
+  double start = wall_seconds();
+  const auto pyramid = TilePyramid::open(std::filesystem::path{folder} / "tileset.json");
+  if (!pyramid) return 2;
+  TilePager pager{*pyramid};
+  const Mesh* root = pager.content(0);
+  if (root == nullptr || !render::render_mesh(*root, {.width_px = 1280, .height_px = 720, .supersample = 1})) return 2;
+  std::printf("{\"first_picture_seconds\": %.2f, \"peak_megabytes\": %.0f}\n", wall_seconds() - start, peak_mb());
+  const Box& box = (*pyramid)->bounds();
+  std::vector<render::Picture> tiled;
+  render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
+  const auto place = [&](int step) {
+    options.camera.target_m = (*pyramid)->origin() + box.center();
+    options.camera.eye_m = *options.camera.target_m - glm::dvec3{0.0, 0.5 * box.diagonal_m() * (0.3 + 0.5 * step), 0.0};
+  };
+  for (int step = 1; step <= 10; ++step) {
+    place(step);
+    View view;
+    view.eye = *options.camera.eye_m - (*pyramid)->origin();
+    view.fov_y_rad = options.camera.fov_y_rad;
+    std::vector<const Mesh*> tiles;
+    for (const NodeId tile : pager.settle(view)) tiles.push_back(pager.content(tile));
+    Mesh whole = merged(tiles);
+    whole.origin = (*pyramid)->origin();
+    auto picture = render::render_mesh(whole, options);
+    if (!picture) return 2;
+    std::printf(
+        "{\"distance\": %d, \"tiles\": %zu, \"triangles\": %u, \"frame_seconds\": %.4f, \"resident_megabytes\": "
+        "%.1f}\n",
+        step, tiles.size(), picture->triangles, picture->frame_seconds,
+        1e-6 * static_cast<double>(pager.status().resident_bytes));
+    tiled.push_back(std::move(*picture));
+  }
+  start = wall_seconds();
+  const Mesh mesh = read(file, LoadTextures::Decoded);
+  std::printf("{\"monolith_load_seconds\": %.2f}\n", wall_seconds() - start);
+  for (int step = 1; step <= 10; ++step) {
+    place(step);
+    const auto picture = render::render_mesh(mesh, options);
+    if (!picture) return 2;
+    std::printf("{\"distance\": %d, \"monolith_frame_seconds\": %.4f, \"picture_rms\": %.2f}\n", step,
+                picture->frame_seconds, image_rms(picture->image, tiled[static_cast<std::size_t>(step - 1)].image));
+  }
+  std::printf("{\"peak_megabytes\": %.0f}\n", peak_mb());
+  return 0;
+}
+
+Mesh by_meshoptimizer(const Mesh& mesh, std::uint32_t target) {
+  Mesh result = mesh;
+  const std::size_t count =
+      meshopt_simplify(result.indices.data(), mesh.indices.data(), mesh.indices.size(), &mesh.vertices.positions[0].x,
+                       mesh.vertex_count(), sizeof(glm::vec3), std::size_t{target} * 3, 1e9F, 0, nullptr);
+  result.indices.resize(count);
+  result.face_materials.clear();
+  result.face_features.clear();
+  return result;
+}
+
+void print_error(const char* name, const Mesh& source, const Mesh& result) {
+  const auto distance = compare(source, result, {.samples = 200'000});
+  const auto look = render::six_direction_rms(source, result, 384);
+  if (!distance || !look) return;
+  const double ppm = 1e6 / distance->diagonal_m;
+  std::printf(", \"%s\": {\"triangles\": %u, \"hausdorff_ppm\": %.0f, \"rms_ppm\": %.1f, \"texture_rms\": %.3f}", name,
+              result.triangle_count(), distance->hausdorff_m * ppm, distance->rms_m * ppm, *look);
+}
+
+int error(const char* file) {
+  const Mesh mesh = read(file, LoadTextures::Decoded);
+  for (int percent = 10; percent <= 95; percent += percent < 90 ? 10 : 5) {
+    const auto target = static_cast<std::uint32_t>(mesh.triangle_count() * (100 - percent) / 100);
+    std::printf("{\"simplified_percent\": %d", percent);
+    for (const auto& [name, attributes] : {std::pair{"ours", Attributes::All}, {"positions_only", Attributes::None}}) {
+      const auto simplified = simplify(mesh, {.attributes = attributes, .target_triangles = target});
+      if (simplified) print_error(name, mesh, simplified->mesh);
+    }
+    // Its index buffer knows no materials: only where there is one.
+    if (mesh.materials.size() == 1) print_error("libmeshoptimizer", mesh, by_meshoptimizer(mesh, target));
+    std::printf("}\n");
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 1 ? argv[1] : "";
+  if (mode == "build" && argc >= 5) {
+    return build(argv[2], argv[3], std::atof(argv[4]), argc > 5 ? static_cast<unsigned>(std::atoi(argv[5])) : 0);
+  }
+  if (mode == "load" && argc == 4) return load(argv[2], argv[3]);
+  if (mode == "error" && argc == 3) return error(argv[2]);
+  std::fprintf(stderr, "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | load MESH FOLDER | error MESH\n");
+  return 1;
+}
