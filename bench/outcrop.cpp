@@ -63,15 +63,14 @@ int build(const char* file, const char* folder, double ratio, unsigned threads) 
     return 2;
   }
   const double processor = processor_seconds();
-  constexpr double paper_processor_seconds = 8424.0 * 0.096 * 16.0;  // Table 2, Model 1: 9.6 % of 16 threads
   std::printf(
       "{\"ratio\": %g, \"triangles\": %u, \"images\": %zu, \"megapixels\": %.0f, \"tiles\": %u, \"levels\": %zu, "
-      "\"megabytes\": %.0f, \"wall_seconds\": %.1f, \"processor_seconds\": %.1f, \"paper_over_ours\": %.1f, "
+      "\"megabytes\": %.0f, \"wall_seconds\": %.1f, \"processor_seconds\": %.1f, "
       "\"decode_megapixels_per_second\": %.0f, \"resample_megapixels_per_second\": %.0f, "
       "\"encode_megapixels_per_second\": %.0f, \"geometry_seconds\": %.1f, \"peak_megabytes\": %.0f}\n",
       ratio, written->source_triangles, images, written->decoded_megapixels, written->tiles, written->levels.size(),
       1e-6 * static_cast<double>(written->bytes), wall_seconds() - start, processor,
-      paper_processor_seconds / processor, written->decoded_megapixels / written->decode_seconds,
+              written->decoded_megapixels / written->decode_seconds,
       written->decoded_megapixels / written->resample_seconds, written->encoded_megapixels / written->encode_seconds,
       written->geometry_seconds, peak_mb());
   return 0;
