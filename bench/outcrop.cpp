@@ -70,9 +70,8 @@ int build(const char* file, const char* folder, double ratio, unsigned threads) 
       "\"encode_megapixels_per_second\": %.0f, \"geometry_seconds\": %.1f, \"peak_megabytes\": %.0f}\n",
       ratio, written->source_triangles, images, written->decoded_megapixels, written->tiles, written->levels.size(),
       1e-6 * static_cast<double>(written->bytes), wall_seconds() - start, processor,
-              written->decoded_megapixels / written->decode_seconds,
-      written->decoded_megapixels / written->resample_seconds, written->encoded_megapixels / written->encode_seconds,
-      written->geometry_seconds, peak_mb());
+      written->decoded_megapixels / written->decode_seconds, written->decoded_megapixels / written->resample_seconds,
+      written->encoded_megapixels / written->encode_seconds, written->geometry_seconds, peak_mb());
   return 0;
 }
 
