@@ -267,7 +267,8 @@ CollapseReport Engine::run() {
   while (!done()) {
     const std::uint32_t before = faces_left_;
     const bool any = pass(share);
-    if (prune_share * error_m_ > prune_growth * pruned_to_m_) prune(prune_share * error_m_);
+    const double growth = mesh_.point_count() < region_points ? 1.0 : prune_growth;
+    if (prune_share * error_m_ >= growth * pruned_to_m_) prune(prune_share * error_m_);
     context_.report("collapse", 1.0 - faces_left_ / total);
     if (!any && share >= 1.0 && !relax() && !prune_anew()) break;
     const double wanted = 0.5 * quota() * before;

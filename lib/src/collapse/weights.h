@@ -29,7 +29,7 @@ inline constexpr unsigned most_star_faces = 512;
 // A part may vanish once this share of the largest error so far covers its distance from what stays.
 inline constexpr double prune_share = 1.0;
 
-// Parts are looked at again when that has grown so much: to measure them is dear.
+// In large meshes parts are looked at again when that has grown so much: to measure them is dear.
 inline constexpr double prune_growth = 1.25;
 
 // Share of the edges, cheapest first, that a pass looks at.
