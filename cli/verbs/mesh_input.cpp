@@ -7,10 +7,11 @@ void MeshInput::declare(Arguments& arguments, const std::string& name, const std
   arguments.file(name, file_, help, need);
   arguments.choice("--up", up_, {"from-file", "y", "z"}, "Axis that points up in the mesh file");
   arguments.length_m("--unit", unit_m_, "Length of one unit of the mesh file");
+  arguments.text("--crs", crs_, "Coordinate reference system, such as EPSG:25832, where the file names none");
 }
 
 Result<LoadedMesh> MeshInput::read(Session& session, LoadTextures textures) const {
-  ReadOptions options{.unit_m = unit_m_.value_or(0.0), .textures = textures};
+  ReadOptions options{.unit_m = unit_m_.value_or(0.0), .crs = crs_.value_or(""), .textures = textures};
   if (up_ == "y") options.up = UpAxis::Y;
   if (up_ == "z") options.up = UpAxis::Z;
   auto loaded = read_mesh(file_, options, session.context());

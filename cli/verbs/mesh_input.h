@@ -26,6 +26,7 @@ class MeshInput {
   std::filesystem::path file_;
   std::string up_ = "from-file";
   std::optional<double> unit_m_;
+  std::optional<std::string> crs_;
 };
 
 }  // namespace lodestone::cli

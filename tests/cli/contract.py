@@ -123,6 +123,22 @@ class Keys(Contract):
         low, high = found["bounds_m"]
         self.assertTrue(all(a < b for a, b in zip(low, high)))
 
+    def test_the_reference_system_is_said_or_found_beside(self):
+        bare = self.scratch / "bare.obj"
+        bare.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.assertEqual(self.json("inspect", bare)["crs"], "")
+        self.assertEqual(self.json("inspect", bare, "--crs", "EPSG:25833")["crs"], "EPSG:25833")
+        prj = self.scratch / "bare.prj"
+        prj.write_text('PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",AUTHORITY["EPSG","4258"]],AUTHORITY["EPSG","25832"]]')
+        self.assertEqual(self.json("inspect", bare)["crs"], "EPSG:25832")
+        prj.write_text('PROJCRS["ETRS89 / UTM zone 32N",BASEGEOGCRS["ETRS89",ID["EPSG",4258]],ID["EPSG",25832]]')
+        self.assertEqual(self.json("inspect", bare)["crs"], "EPSG:25832")
+        prj.write_text('PROJCS["ETRS_1989_UTM_Zone_32N",UNIT["Meter",1.0]]')
+        self.assertEqual(self.json("inspect", bare)["crs"], "ETRS_1989_UTM_Zone_32N")
+        built = self.scratch / "bare.lode"
+        self.json("build", bare, "--crs", "EPSG:25832", "-o", built)
+        self.assertEqual(self.json("inspect", built)["crs"], "EPSG:25832")
+
     def test_inspect_reads_models(self):
         self.assertEqual(self.json("inspect", self.model)["triangles"], self.json("inspect", self.house)["triangles"])
 

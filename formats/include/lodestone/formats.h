@@ -35,6 +35,9 @@ enum class LoadTextures : std::uint8_t {
 struct ReadOptions {
   UpAxis up = UpAxis::FromFile;  ///< FromFile: the format's rule (glTF Y, CityGML Z), OBJ and PLY Z unless stated
   double unit_m = 0.0;           ///< metres per file unit; 0 = the format's rule, else 1
+  /// Coordinate reference system such as "EPSG:25832"; empty = what the file says, else what a .prj file (well-known
+  /// text) beside it says.
+  std::string crs;
   LoadTextures textures = LoadTextures::Encoded;
   /// Caps. Beyond them a file is refused (TooLarge) instead of filling the memory.
   std::uint64_t max_vertices = 400'000'000;

@@ -8,12 +8,10 @@
 
 #include <lodestone/mesh.h>
 
+#include "base/corners.h"
 #include "mesh/weld.h"
 
 namespace lodestone {
-
-// The corner after c in its face.
-[[nodiscard]] constexpr CornerId next_corner(CornerId c) noexcept { return c % 3 == 2 ? c - 2 : c + 1; }
 
 // One side of a face: from the point of `corner` to that of the next corner of the face.
 struct EdgeUse {

@@ -31,6 +31,8 @@
 
 #include <lodestone/progressive_model.h>
 
+#include "base/corners.h"
+
 namespace lodestone::progressive {
 
 inline constexpr std::uint8_t edit_shape =
@@ -43,14 +45,6 @@ inline constexpr std::uint32_t edit_head_words = 6;
 [[nodiscard]] inline std::uint32_t corners_of(std::uint8_t shape) noexcept { return shape & RecordShape::corner_mask; }
 [[nodiscard]] inline bool moves(std::uint8_t shape) noexcept { return (shape & RecordShape::moves_flag) != 0; }
 [[nodiscard]] inline std::uint32_t fan_faces(RecordKind kind) noexcept { return kind == RecordKind::FanBoth ? 2 : 1; }
-
-// The corner after, or before, in the same face.
-[[nodiscard]] inline CornerId next_corner(CornerId corner) noexcept {
-  return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-[[nodiscard]] inline CornerId previous_corner(CornerId corner) noexcept {
-  return corner % 3 == 0 ? corner + 2 : corner - 1;
-}
 
 // Element `at` of fan_corners.
 template <unsigned Bytes>
