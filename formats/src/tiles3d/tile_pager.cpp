@@ -132,6 +132,7 @@ void TilePager::State::ask(const View& view, const View& later) {
     for (const NodeId tile : ahead) tiles[tile].last_used = frame;
   }
   wanted.insert(wanted.end(), now.begin(), now.end());
+  for (const NodeId tile : now) tiles[tile].last_used = frame;  // siblings wait for each other, whatever the budget
   for (const NodeId tile : drawn) {
     for (NodeId n = tile; n != none; n = parent[n]) tiles[n].last_used = frame;
   }

@@ -78,6 +78,10 @@ TEST_CASE("While tiles are on their way, and whatever the budget, no part of the
     for (const NodeId tile : drawn) CHECK(pager.content(tile) != nullptr);
     if (frame % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds{5});
   }
+  // What is needed comes even where it is more than the budget.
+  const auto near = pager.settle(from_south(**pyramid, 1.2));
+  CHECK(triangles(pager, near) > 1000);
+  CHECK(pager.status().resident_bytes > 300'000);
   static_cast<void>(pager.settle(from_south(**pyramid, 3000.0)));
   static_cast<void>(pager.update(from_south(**pyramid, 3000.0), 0.0));
   CHECK(pager.status().resident_bytes <= 300'000);
