@@ -138,7 +138,7 @@ Status Studying::fit_and_design() {
   if (!plan) return plan.error();
   study_.design = std::move(*plan);
   study_.plan = study_.design;
-  move_idle_switches(study_.plan, study_.fit, *model_, study_.first_m, beyond_m(), study_.focal_px);
+  settle_switches(study_.plan, study_.fit, *model_, study_.first_m, beyond_m(), study_.focal_px);
   for (SideStudy& side : study_.sides) {
     auto own = fit_detail(side.samples);
     if (!own) return own.error();

@@ -60,7 +60,7 @@ struct SwitchStudy {
   std::vector<DetailSample> samples;     ///< pooled
   DetailFit fit;                         ///< of the pooled samples, as `design`
   SwitchPlan design;                     ///< least redundancy
-  SwitchPlan plan;                       ///< the same, idle switches moved
+  SwitchPlan plan;                       ///< the same, settled on the levels there are
   std::vector<SwitchPlan> alternatives;  ///< equal intervals of 1.46, 2.92, 4.38 d1, exponential 2 and 3
   PlanCheck plan_check;
   /// The plan with its levels refined one by one until no more than `noticeable_limit` of the pixels differ noticeably:

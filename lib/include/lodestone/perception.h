@@ -209,10 +209,12 @@ struct SwitchPlan {
 /// `plan.allowed_px` at its distance. `last_m` is beyond d1.
 void add_cost(SwitchPlan& plan, const ProgressiveModel& model, double first_m, double last_m, double focal_px);
 
-/// A switch at which `model` has no coarser level than before saves nothing: each such goes to where it saves most of
-/// the cost instead. Costs and redundancy follow. Call after `add_cost`, with the same distances.
-void move_idle_switches(SwitchPlan& plan, const DetailFit& fit, const ProgressiveModel& model, double first_m,
-                        double last_m, double focal_px);
+/// The levels of a real model come in steps, which the fit does not know, and a switch may stand where there is next to
+/// nothing coarser. One at a time, the switch that gains most goes to where it saves most of the cost, until no move
+/// saves a hundredth; the first stays at d1. Costs and redundancy follow. Call after `add_cost`, with the same
+/// distances.
+void settle_switches(SwitchPlan& plan, const DetailFit& fit, const ProgressiveModel& model, double first_m,
+                     double last_m, double focal_px);
 
 /// Makes the levels of a plan as fine as `cost` allows: `plan.allowed_px`, between 0.001 and 64, becomes the least with
 /// which it costs no more; what is left then refines the levels one by one, the farthest first.

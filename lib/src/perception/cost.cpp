@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Based on: Zhu et al. 2010, section 5.4 (equations 17 and 18).
-// Differs: a switch at which the model has nothing coarser to switch to is moved to where it has.
+// Differs: the levels of a real model come in steps, which the fit does not know: a switch moves where they save more.
 #include <lodestone/perception.h>
 
 #include <algorithm>
@@ -51,24 +51,27 @@ void add_cost(SwitchPlan& plan, const ProgressiveModel& model, double first_m, d
   }
 }
 
-void move_idle_switches(SwitchPlan& plan, const DetailFit& fit, const ProgressiveModel& model, double first_m,
-                        double last_m, double focal_px) {
+void settle_switches(SwitchPlan& plan, const DetailFit& fit, const ProgressiveModel& model, double first_m,
+                     double last_m, double focal_px) {
+  constexpr double least_saving = 0.01;
   const std::vector<double> designed_m = plan.switch_m;
-  for (std::size_t turn = plan.switch_m.size(); turn > 0; --turn) {
-    const auto idle = std::adjacent_find(plan.levels.begin(), plan.levels.end());
-    if (idle == plan.levels.end()) break;
-    const SwitchPlan before = plan;
-    plan.switch_m.erase(plan.switch_m.begin() + (idle - plan.levels.begin()) + 1);
-    add_cost(plan, model, first_m, last_m, focal_px);
-    const double beyond_m = best_further_switch(plan, model, first_m, last_m, focal_px);
-    if (beyond_m < 0.0) {
-      plan = before;  // the model has nothing coarser anywhere
-      break;
+  const std::size_t most_turns = 2 * plan.switch_m.size();
+  for (std::size_t turn = 0; turn < most_turns; ++turn) {
+    SwitchPlan best = plan;
+    for (std::size_t i = 1; i < plan.switch_m.size(); ++i) {
+      SwitchPlan moved = plan;
+      moved.switch_m.erase(moved.switch_m.begin() + static_cast<std::ptrdiff_t>(i));
+      add_cost(moved, model, first_m, last_m, focal_px);
+      const double beyond_m = best_further_switch(moved, model, first_m, last_m, focal_px);
+      if (beyond_m < 0.0) continue;  // the model has nothing coarser anywhere
+      moved.switch_m.insert(std::upper_bound(moved.switch_m.begin(), moved.switch_m.end(), beyond_m), beyond_m);
+      add_cost(moved, model, first_m, last_m, focal_px);
+      if (moved.cost < best.cost) best = std::move(moved);
     }
-    plan.switch_m.insert(std::upper_bound(plan.switch_m.begin(), plan.switch_m.end(), beyond_m), beyond_m);
-    add_cost(plan, model, first_m, last_m, focal_px);
+    if (best.cost >= (1.0 - least_saving) * plan.cost) break;
+    plan = std::move(best);
   }
-  if (plan.switch_m != designed_m) plan.name = "idle switches moved";
+  if (plan.switch_m != designed_m) plan.name = "settled on the model's levels";
   plan.redundancy = redundancy(fit, plan.switch_m, last_m);
 }
 
