@@ -103,9 +103,11 @@ struct TerrainZoomSummary {
   double mean_vertices = 0.0;
   double mean_triangles = 0.0;
   double tolerance_m = 0.0;
-  double max_error_m = 0.0;   ///< measured
-  double mean_error_m = 0.0;  ///< mean over tiles of their largest errors
-  double gap_bound_m = 0.0;   ///< no border of this zoom is farther than this from the same border one zoom above
+  double max_error_m = 0.0;  ///< measured
+  /// Mean over tiles of their largest errors in height: no post is farther from its tile, so it is above the mean of
+  /// their one-sided Hausdorff distances.
+  double mean_error_m = 0.0;
+  double gap_bound_m = 0.0;  ///< no border of this zoom is farther than this from the same border one zoom above
 };
 struct TerrainSummary {
   std::vector<TerrainZoomSummary> zooms;
