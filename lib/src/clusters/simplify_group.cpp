@@ -7,9 +7,7 @@
 #include "clusters/simplify_group.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include "base/hash.h"
@@ -41,8 +39,7 @@ class GroupSink final : public collapse::Sink {
   void record(const collapse::Edit& edit) override {
     for (const FaceId f : edit.faces) gone_[f] = 1;
     for (const auto& [corner, to] : edit.corners) mesh_.indices[corner] = to;
-    const std::size_t words = edit.moved.empty() ? 0 : edit.values.size() / edit.moved.size();
-    for (std::size_t i = 0; i < edit.moved.size(); ++i) move(edit.moved[i], edit.values.data() + i * words);
+    move_vertices(edit, mesh_.vertices);
     for (const auto& [vertex, into] : edit.vertices) {
       into_[vertex] = into;
       deviation_m_[into] = std::max({deviation_m_[into], deviation_m_[vertex], edit.error_m});
@@ -66,18 +63,6 @@ class GroupSink final : public collapse::Sink {
   }
 
  private:
-  void move(VertexId v, const std::uint32_t* words) {
-    VertexArrays& values = mesh_.vertices;
-    const auto take = [&](auto& value) {
-      std::memcpy(&value, words, sizeof value);
-      words += sizeof value / 4;
-    };
-    take(values.positions[v]);
-    if (!values.normals.empty()) take(values.normals[v]);
-    if (!values.uvs.empty()) take(values.uvs[v]);
-    if (!values.colors.empty()) take(values.colors[v]);
-  }
-
   Mesh& mesh_;
   std::vector<float>& deviation_m_;
   std::vector<std::uint8_t> gone_;

@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -298,6 +299,20 @@ CollapseReport Engine::report() const {
 }
 
 }  // namespace
+
+void move_vertices(const Edit& edit, VertexArrays& values) {
+  const std::uint32_t* words = edit.values.data();
+  const auto take = [&words](auto& value) {
+    std::memcpy(&value, words, sizeof value);
+    words += sizeof value / sizeof *words;
+  };
+  for (const VertexId v : edit.moved) {
+    take(values.positions[v]);
+    if (!values.normals.empty()) take(values.normals[v]);
+    if (!values.uvs.empty()) take(values.uvs[v]);
+    if (!values.colors.empty()) take(values.colors[v]);
+  }
+}
 
 Status check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   if (Status status = validate(mesh); !status.ok()) return status.error();

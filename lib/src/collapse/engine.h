@@ -16,6 +16,9 @@ class Sink {
   virtual void record(const Edit& edit) = 0;
 };
 
+// For sinks that keep a mesh up to date: gives the moved vertices their new values.
+void move_vertices(const Edit& edit, VertexArrays& values);
+
 // Errors: BadData from validate(mesh), BadArgument.
 [[nodiscard]] Status check(const Mesh& mesh, const EdgeCollapseOptions& options);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <bit>
-#include <cstring>
+#include <algorithm>
+#include <vector>
 
 #include <lodestone/edge_collapse.h>
 
@@ -17,8 +17,7 @@ class MeshSink final : public collapse::Sink {
   void record(const collapse::Edit& edit) override {
     for (const FaceId f : edit.faces) gone_[f] = 1;
     for (const auto& [corner, to] : edit.corners) mesh_.indices[corner] = to;
-    const std::size_t words = edit.moved.empty() ? 0 : edit.values.size() / edit.moved.size();
-    for (std::size_t i = 0; i < edit.moved.size(); ++i) move(edit.moved[i], edit.values.data() + i * words);
+    move_vertices(edit, mesh_.vertices);
     error_m_ = std::max(error_m_, double{edit.error_m});
   }
 
@@ -41,18 +40,6 @@ class MeshSink final : public collapse::Sink {
   }
 
  private:
-  void move(VertexId v, const std::uint32_t* words) {
-    VertexArrays& values = mesh_.vertices;
-    const auto take = [&](auto& value) {
-      std::memcpy(&value, words, sizeof value);
-      words += sizeof value / 4;
-    };
-    take(values.positions[v]);
-    if (!values.normals.empty()) take(values.normals[v]);
-    if (!values.uvs.empty()) take(values.uvs[v]);
-    if (!values.colors.empty()) take(values.colors[v]);
-  }
-
   Mesh mesh_;
   std::vector<std::uint8_t> gone_;
   double error_m_ = 0.0;
