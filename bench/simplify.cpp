@@ -23,6 +23,8 @@
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
 
+#include "positions_only.h"
+
 namespace {
 
 using namespace lodestone;
@@ -48,15 +50,6 @@ Seconds best_of_three(Work&& work) {
     best.wall = std::min(best.wall, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count());
   }
   return best;
-}
-
-Mesh positions_only(const Mesh& mesh) {
-  Mesh result;
-  result.materials.emplace_back();
-  result.vertices.positions = mesh.vertices.positions;
-  result.indices = mesh.indices;
-  merge_identical_vertices(result);
-  return result;
 }
 
 Mesh by_meshoptimizer(const Mesh& mesh, std::uint32_t target) {
@@ -141,6 +134,6 @@ int main(int argc, char** argv) {
     return 1;
   }
   const Mesh source = std::move(loaded->mesh);
-  const Mesh bare = positions_only(source);
+  const Mesh bare = bench::positions_only(source);
   for (const double ratio : {0.5, 0.2, 0.1, 0.02, 0.01}) measure(source, bare, ratio, samples);
 }

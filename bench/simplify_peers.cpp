@@ -16,20 +16,12 @@
 #include <lodestone/metrics.h>
 
 #include "peers.h"
+#include "positions_only.h"
 #include "thread_clock.h"
 
 namespace {
 
 using namespace lodestone;
-
-Mesh positions_only(const Mesh& mesh) {
-  Mesh result;
-  result.materials.emplace_back();
-  result.vertices.positions = mesh.vertices.positions;
-  result.indices = mesh.indices;
-  merge_identical_vertices(result);
-  return result;
-}
 
 peers::Outcome by_us(const Mesh& mesh, std::uint32_t target) {
   Context one;
@@ -68,7 +60,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "bench_simplify_peers: %s\n", to_line(loaded.error()).c_str());
     return 2;
   }
-  const Mesh mesh = positions_only(loaded->mesh);
+  const Mesh mesh = bench::positions_only(loaded->mesh);
   for (const double kept : {0.5, 0.1, 0.01}) {
     const auto target = static_cast<std::uint32_t>(kept * mesh.triangle_count());
     std::printf("{\"kept\": %.2f", kept);
