@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <lodestone/facet_shift.h>
+
+#include "facet_report.h"
 #include "mesh_input.h"
 #include "verbs.h"
 
@@ -10,11 +13,17 @@ class Inspect final : public Verb {
   [[nodiscard]] std::string name() const override { return "inspect"; }
   [[nodiscard]] std::string summary() const override { return "Read any input and say what it is"; }
   [[nodiscard]] std::string example() const override { return "lodestone inspect house.obj --json"; }
-  void declare(Arguments& arguments) override { input_.declare(arguments, "FILE", "Mesh or .lode file"); }
+  void declare(Arguments& arguments) override {
+    input_.declare(arguments, "FILE", "Mesh or .lode file");
+    arguments.flag("--facets", facets_, "Tell walls, roofs, openings, and how their planes stand to each other");
+    tolerance_.declare(arguments);
+  }
   [[nodiscard]] Status run(Session& session) override;
 
  private:
   MeshInput input_;
+  PlaneTolerance tolerance_;
+  bool facets_ = false;
 };
 
 Status Inspect::run(Session& session) {
@@ -46,6 +55,7 @@ Status Inspect::run(Session& session) {
   report.set("up_axis", loaded->info.up_axis);
   report.set("unit_m", loaded->info.unit_m);
   report.set("crs", mesh.crs);
+  if (facets_) report_facets(facet_graph(mesh, {.tolerance = tolerance_.value()}), report);
   return Done{};
 }
 

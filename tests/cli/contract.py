@@ -139,6 +139,16 @@ class Keys(Contract):
         self.json("build", bare, "--crs", "EPSG:25832", "-o", built)
         self.assertEqual(self.json("inspect", built)["crs"], "EPSG:25832")
 
+    def test_inspect_tells_facets(self):
+        facets = self.json("inspect", self.house, "--facets")["facets"]
+        self.assertEqual(facets["surfaces"], sum(facets[kind]["surfaces"] for kind in
+                                                 ("wall", "roof", "ground", "opening", "installation", "other")))
+        self.assertGreater(facets["depressions"], 10)
+        self.assertEqual(facets["roofs"][0]["type"], "sloped")
+        self.assertNotIn("facets", self.json("inspect", self.house))
+        fine = self.json("inspect", self.house, "--facets", "--plane-angle", 20, "--plane-offset", "10cm")["facets"]
+        self.assertLess(fine["surfaces"], facets["surfaces"])
+
     def test_inspect_reads_models(self):
         self.assertEqual(self.json("inspect", self.model)["triangles"], self.json("inspect", self.house)["triangles"])
 

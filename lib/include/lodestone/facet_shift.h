@@ -43,6 +43,56 @@ struct SurfaceTolerance {
 /// Cuts a mesh into its planes. O(faces log faces). Precondition: validate(mesh).
 [[nodiscard]] CharacteristicSurfaces characteristic_surfaces(const Mesh& mesh, const SurfaceTolerance& tolerance = {});
 
+/// What the surfaces of one direction do in a wall: nothing stands out, all of it before or all of it behind the datum
+/// plane, or some of it on either side. Figure 1 of the paper.
+enum class WallType : std::uint8_t { Flat, UnevenOneSide, UnevenBothSides };
+
+/// Figure 2 of the paper: level; three or more steep planes that meet in one point on top; all others.
+enum class RoofType : std::uint8_t { Flat, Spire, Sloped };
+
+/// Parallel surfaces that face the same way, none farther from the next than FacetGraphOptions::family_gap_m: a wall
+/// with all that stands out of it or is let into it.
+struct FacetFamily {
+  SurfaceClass kind = SurfaceClass::Other;  ///< of the datum plane
+  WallType wall = WallType::Flat;           ///< meaningful where `kind` is Wall
+  std::uint32_t datum = none;               ///< the surface of the largest area
+  std::vector<std::uint32_t> surfaces;      ///< innermost first
+  std::vector<double> distance_m;           ///< of each from the datum plane, positive outwards
+};
+
+/// Two surfaces of one family that are joined by side faces: what a shift closes.
+struct FacetStep {
+  std::uint32_t lesser = none;       ///< gives way
+  std::uint32_t greater = none;      ///< the one of more area
+  double height_m = 0.0;             ///< of the lesser over the greater: a bulge if positive, else a depression
+  std::vector<std::uint32_t> sides;  ///< surfaces that stand between the two planes and touch both, ascending
+};
+
+/// Roof surfaces that hang together by edges.
+struct RoofPart {
+  RoofType type = RoofType::Sloped;
+  double pitch_rad = 0.0;  ///< mean by area, 0 is level
+  double area_m2 = 0.0;
+  std::vector<std::uint32_t> surfaces;  ///< ascending
+};
+
+struct FacetGraphOptions {
+  SurfaceTolerance tolerance;
+  double least_area_ratio = 1e-4;  ///< of the whole area: smaller surfaces are sides at most
+  double family_gap_m = 2.0;       ///< parallel surfaces farther apart belong to different walls
+};
+
+/// How the surfaces of a building stand to each other.
+struct FacetGraph {
+  CharacteristicSurfaces surfaces;
+  std::vector<FacetFamily> families;  ///< by the area of their datum, larger first
+  std::vector<FacetStep> steps;       ///< by (lesser, greater)
+  std::vector<RoofPart> roofs;        ///< by area, larger first
+};
+
+/// Finds families, steps and roofs. O(faces log faces + surfaces * directions). Precondition: validate(mesh).
+[[nodiscard]] FacetGraph facet_graph(const Mesh& mesh, const FacetGraphOptions& options = {});
+
 /// Share of the area that lies in surfaces of at least `least_ratio` of the whole area, 0..1: near 1 for buildings,
 /// near 0 for scans and sculpture. What `build --method auto` goes by. O(faces log faces).
 [[nodiscard]] double planar_area_share(const Mesh& mesh, double least_ratio = 1e-4);

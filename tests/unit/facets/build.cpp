@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "shapes.h"
+#include "walls.h"
 
 namespace lodestone {
 namespace {
@@ -20,30 +21,10 @@ void check_model(const ProgressiveModel& model, const Mesh& source) {
   CHECK(compare_with_source(model, source) == "");
 }
 
-// A wall 10 m wide and 6 m high in the plane y = 0, seen from y < 0, with a square of 1 m that lies `depth_m` behind it
-// (before it if negative) and the four sides between.
-Mesh wall_with_panel(float depth_m) {
-  Mesh mesh;
-  mesh.materials.emplace_back();
-  auto& p = mesh.vertices.positions;
-  p = {{0, 0, 0}, {10, 0, 0}, {10, 0, 6}, {0, 0, 6}, {4, 0, 2}, {5, 0, 2}, {5, 0, 3}, {4, 0, 3}};
-  for (std::uint32_t i = 4; i < 8; ++i) p.push_back({p[i].x, depth_m, p[i].z});
-  const auto quad = [&](VertexId a, VertexId b, VertexId c, VertexId d) {
-    mesh.indices.insert(mesh.indices.end(), {a, b, c, a, c, d});
-  };
-  for (VertexId i = 0; i < 4; ++i) {
-    const VertexId j = (i + 1) % 4;
-    quad(i, j, 4 + j, 4 + i);
-    quad(4 + i, 4 + j, 8 + j, 8 + i);
-  }
-  quad(8, 9, 10, 11);
-  return mesh;
-}
-
 TEST_CASE("a bulge and a depression come into the wall in one record, at the distance they move") {
   for (const float depth_m : {0.2F, -0.3F}) {
     CAPTURE(depth_m);
-    const Mesh mesh = wall_with_panel(depth_m);
+    const Mesh mesh = test::wall_with_panel(depth_m);
     const auto built = build_by_facet_shift(mesh);
     REQUIRE(built.ok());
     check_model(*built->model, mesh);
@@ -92,7 +73,7 @@ TEST_CASE("houses of every roof keep their planes and stay closed") {
 }
 
 TEST_CASE("building stops at the target, at the error, and when cancelled") {
-  const Mesh mesh = wall_with_panel(0.2F);
+  const Mesh mesh = test::wall_with_panel(0.2F);
   const auto at_target = build_by_facet_shift(mesh, {.target_triangles = 10});
   REQUIRE(at_target.ok());
   CHECK(at_target->model->info(0).triangles <= 10);
