@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <queue>
 
 #include <lodestone/repair.h>
@@ -39,7 +40,8 @@ class Builder {
         log_(progressive::value_words(source.vertices)),
         mesh_(make_facet_mesh(source, options.tolerance, degenerate_)),
         moved_(mesh_),
-        planner_(mesh_) {}
+        planner_(mesh_),
+        parts_(mesh_) {}
 
   progressive::EditLog run(FacetShiftReport& report);
 
@@ -65,7 +67,6 @@ class Builder {
   [[nodiscard]] double key_of_shift(std::uint32_t surface, Direction direction);
   void vanish_parts(double price);
   bool close_openings(double price);
-  bool do_job(const OpeningJob& job, double price);
   void offer_around(std::uint32_t point);
   bool offer_later();
   [[nodiscard]] bool done() const { return mesh_.live_faces <= options_.target_triangles || context_.cancelled(); }
@@ -77,11 +78,12 @@ class Builder {
   FacetMesh mesh_;
   Moved moved_;
   Planner planner_;
+  PartFinder parts_;
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
   std::array<std::vector<Known>, 2> known_;  // per direction and surface
   FacetShiftReport report_;
-  bool closed_ = false;  // to begin with
+  std::optional<Openings> openings_;
 };
 
 void Builder::drop_degenerate() {
@@ -217,9 +219,8 @@ void Builder::vanish_parts(double price) {
   // Farther than this no part of a face or more can be within the price.
   const double limit = std::min(options_.max_error_m, std::sqrt(price / 1e-3));
   std::vector<std::uint8_t> leant_upon(mesh_.point_count(), 0);
-  for (const Part& part : find_parts(mesh_, limit)) {
+  for (const Part& part : parts_.find(limit, price)) {
     if (done()) break;
-    if (part.cost > price * static_cast<double>(part.faces.size())) break;
     if (part.error_m > options_.max_error_m) continue;
     if (mesh_.live_faces - part.faces.size() < 1) continue;
     const bool holds = std::any_of(part.faces.begin(), part.faces.end(), [&](FaceId f) {
@@ -238,28 +239,19 @@ void Builder::vanish_parts(double price) {
   }
 }
 
-bool Builder::do_job(const OpeningJob& job, double price) {
-  if (job.key() > price || job.error_m > options_.max_error_m) return false;
-  apply(mesh_, job.patch, job.error_m, log_);
-  for (const Redrawn& r : job.patch.redrawn) {
-    for (const std::uint32_t p : r.point) later_.push_back(p);
-  }
-  return true;
-}
-
 bool Builder::close_openings(double price) {
   bool any = false;
-  const std::vector<Opening> openings = find_openings(mesh_);
-  const Niches niches{mesh_, closed_};
-  for (const Opening& opening : openings) {
+  openings_->update();
+  for (const Opening& opening : openings_->all()) {
     if (done()) break;
-    if (const auto job = niches.flatten(opening); job && do_job(*job, price)) {
-      ++report_.openings_flattened;
-      any = true;
-    } else if (const auto closing = fill(mesh_, opening); closing && do_job(*closing, price)) {
-      ++report_.openings_filled;
-      any = true;
+    const auto job = openings_->job(opening, price, options_.max_error_m);
+    if (!job) continue;
+    apply(mesh_, job->patch, job->error_m, log_);
+    for (const Redrawn& r : job->patch.redrawn) {
+      for (const std::uint32_t p : r.point) later_.push_back(p);
     }
+    ++(job->kind == OpeningJob::Kind::Flatten ? report_.openings_flattened : report_.openings_filled);
+    any = true;
   }
   return any;
 }
@@ -276,7 +268,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
     if (mesh_.faces[f].live) live.push_back(f);
   }
-  closed_ = outline(mesh_, live).empty();
+  openings_.emplace(mesh_, outline(mesh_, live).empty());
   for (auto& known : known_) known.resize(mesh_.surface_faces.size());
   for (std::uint32_t p = 0; p < mesh_.point_count() && !context_.cancelled(); ++p) offer(p);
   double area = 0.0;

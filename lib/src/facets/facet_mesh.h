@@ -49,6 +49,13 @@ struct FacetMesh {
   [[nodiscard]] glm::dvec3 area_vector(const Face& f) const noexcept {
     return glm::cross(at(f.point[1]) - at(f.point[0]), at(f.point[2]) - at(f.point[0]));
   }
+  // Changes when the face, its corners or its neighbours do; never 0.
+  [[nodiscard]] std::uint64_t state_of(FaceId f) const noexcept {
+    std::uint64_t sum = 1;
+    for (const std::uint32_t p : faces[f].point)
+      sum += (p + 1ULL) * 0x9E3779B97F4A7C15U + version[p] * 0xC2B2AE3D27D4EB4FU;
+    return sum == 0 ? 1 : sum;
+  }
 };
 
 // Faces with two corners on one point or no area are dead from the start: `degenerate` names them.
@@ -80,6 +87,11 @@ class Moved {
   std::vector<FaceId> faces_;
   std::uint32_t now_ = 0;
 };
+
+// The mean squared distance of a triangle whose corners are so far from a plane.
+[[nodiscard]] inline double mean_square(double a, double b, double c) noexcept {
+  return (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0;
+}
 
 // Flatter than this a face is a line.
 inline constexpr double line_height_m = 1e-4;

@@ -21,11 +21,6 @@ constexpr double drift_weight = 3.0;
 constexpr double flip_cosine = 0.2;
 constexpr double one_side_cosine = 0.95;
 
-// The integral of the squared distance over a triangle whose corners are so far from its old plane, over its area.
-double mean_square(const std::array<double, 3>& d) {
-  return (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[0] * d[1] + d[1] * d[2] + d[2] * d[0]) / 6.0;
-}
-
 // Adds what happens to one face that keeps three corners; false if it must not.
 bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Verdict& verdict) {
   const auto& p = face.point;
@@ -44,7 +39,7 @@ bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Ver
     distance[k] = glm::dot(face.normal, to[k] - mesh.at(p[k]));
     verdict.error_m = std::max(verdict.error_m, std::abs(distance[k]));
   }
-  verdict.cost += 0.5 * length * mean_square(distance);
+  verdict.cost += 0.5 * length * mean_square(distance[0], distance[1], distance[2]);
   // What strayed before strays further: (a + b)^2 is more than a^2 + b^2.
   for (std::size_t k = 0; k < 3; ++k) {
     if (!moved.moves(p[k])) continue;

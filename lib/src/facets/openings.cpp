@@ -37,51 +37,6 @@ Plane plane_of(const FacetMesh& mesh, const Opening& opening) {
   return {face.normal, glm::dot(face.normal, mesh.at(face.point[0]))};
 }
 
-struct Side {
-  std::uint32_t low, high;
-  FaceId face;
-  bool operator<(const Side& b) const {
-    return low != b.low ? low < b.low : high != b.high ? high < b.high : face < b.face;
-  }
-};
-
-// Faces that hang together by edges, in one plane and of one material.
-std::vector<std::vector<FaceId>> find_walls(const FacetMesh& mesh) {
-  std::vector<Side> sides;
-  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
-    if (!mesh.faces[f].live) continue;
-    const auto& p = mesh.faces[f].point;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(p[k], p[k == 2 ? 0 : k + 1]);
-      sides.push_back({low, high, f});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  DisjointSets sets{static_cast<std::uint32_t>(mesh.faces.size())};
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const Face& a = mesh.faces[sides[i].face];
-    const double offset = glm::dot(a.normal, mesh.at(a.point[0]));
-    for (std::size_t j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;
-         ++j) {
-      if (mesh.source->face_material(sides[i].face) == mesh.source->face_material(sides[j].face) &&
-          lies_in(mesh, mesh.faces[sides[j].face], a.normal, offset))
-        sets.join(sides[i].face, sides[j].face);
-    }
-  }
-  std::vector<std::vector<FaceId>> walls;
-  std::vector<std::uint32_t> wall_of(mesh.faces.size(), none);
-  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
-    if (!mesh.faces[f].live) continue;
-    std::uint32_t& wall = wall_of[sets.find(f)];
-    if (wall == none) {
-      wall = static_cast<std::uint32_t>(walls.size());
-      walls.emplace_back();
-    }
-    walls[wall].push_back(f);
-  }
-  return walls;
-}
-
 // The loop as a polygon in the plane.
 class Shape {
  public:
@@ -112,8 +67,6 @@ class Shape {
   glm::dvec3 u_, v_;
   std::vector<glm::dvec2> corners_;
 };
-
-double mean_square(double a, double b, double c) { return (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0; }
 
 double area(const FacetMesh& mesh, FaceId f) { return 0.5 * glm::length(mesh.area_vector(mesh.faces[f])); }
 
@@ -400,71 +353,30 @@ bool find_filling(const FacetMesh& mesh, const Opening& opening, const Plane& pl
 
 }  // namespace
 
-std::vector<Opening> find_openings(const FacetMesh& mesh) {
-  std::vector<Opening> openings;
-  for (const std::vector<FaceId>& wall : find_walls(mesh)) {
-    if (wall.size() < 6) continue;
-    const glm::dvec3 normal = mesh.faces[wall.front()].normal;
-    for (auto& loop : chain(mesh, outline(mesh, wall), normal)) {
-      const double a = signed_area(mesh, loop, normal);
-      if (a >= 0.0 || loop.size() > most_corners) continue;
-      Opening opening;
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        opening.perimeter_m += glm::length(mesh.at(loop[i]) - mesh.at(loop[(i + 1) % loop.size()]));
-      }
-      opening.loop = std::move(loop);
-      opening.wall = wall.front();
-      opening.area_m2 = -a;
-      openings.push_back(std::move(opening));
-    }
-  }
-  std::stable_sort(openings.begin(), openings.end(),
-                   [](const Opening& a, const Opening& b) { return a.area_m2 < b.area_m2; });
-  return openings;
-}
-
-Niches::Niches(const FacetMesh& mesh, bool closed)
-    : mesh_(mesh),
-      closed_(closed),
-      face_of_([&] {
-        std::vector<FaceId> live;
-        for (FaceId f = 0; f < mesh.faces.size(); ++f) {
-          if (mesh.faces[f].live) live.push_back(f);
-        }
-        return live;
-      }()),
-      tree_(mesh.place, [&] {
-        std::vector<VertexId> indices;
-        for (const FaceId f : face_of_) {
-          indices.insert(indices.end(), mesh.faces[f].point.begin(), mesh.faces[f].point.end());
-        }
-        return indices;
-      }()) {}
-
-std::optional<OpeningJob> Niches::flatten(const Opening& opening) const {
-  if (!mesh_.faces[opening.wall].live) return std::nullopt;
+// What stands in the opening becomes one pane in the plane of the wall, drawn between the corners of the hole: the pane
+// comes forward and hides the rest. Empty if the opening is not covered, if something holds it from outside, or if it
+// is flush.
+std::optional<OpeningJob> Openings::flatten(const Opening& opening) {
   const Plane plane = plane_of(mesh_, opening);
   const Shape shape{mesh_, opening, plane.normal};
-  glm::dvec3 middle{0.0};
-  for (const std::uint32_t p : opening.loop) middle += mesh_.at(p) / static_cast<double>(opening.loop.size());
-  double radius = 0.0;
-  for (const std::uint32_t p : opening.loop) radius = std::max(radius, glm::length(mesh_.at(p) - middle));
   std::vector<FaceId> content;
-  const auto stands_in = [&](FaceId i) {
-    const Face& face = mesh_.faces[face_of_[i]];
-    if (!face.live) return false;
+  const auto stands_in = [&](const Face& face) {
     return std::all_of(face.point.begin(), face.point.end(), [&](std::uint32_t p) {
       const double h = plane.height(mesh_.at(p));
       return h > -most_depth_m && h < most_height_m && shape.contains(mesh_.at(p), margin_m);
     });
   };
-  tree_.within(middle, radius + most_depth_m, stands_in, [&](FaceId i) {
-    const FaceId f = face_of_[i];
-    const Face& face = mesh_.faces[f];
-    // The wall itself may run around a bend of the outline.
-    const glm::dvec3 center = (mesh_.at(face.point[0]) + mesh_.at(face.point[1]) + mesh_.at(face.point[2])) / 3.0;
-    if (shape.contains(center, 0.0) || !lies_in(mesh_, face, plane.normal, plane.offset_m)) content.push_back(f);
-    return true;
+  ++look_;
+  cells_.visit_points(box_of(opening), [&](std::uint32_t p) {
+    for (const FaceId f : mesh_.faces_of[p]) {
+      if (looked_at_[f] == look_) continue;
+      looked_at_[f] = look_;
+      const Face& face = mesh_.faces[f];
+      if (!stands_in(face)) continue;
+      // The wall itself may run around a bend of the outline.
+      const glm::dvec3 center = (mesh_.at(face.point[0]) + mesh_.at(face.point[1]) + mesh_.at(face.point[2])) / 3.0;
+      if (shape.contains(center, 0.0) || !lies_in(mesh_, face, plane.normal, plane.offset_m)) content.push_back(f);
+    }
   });
   std::sort(content.begin(), content.end());
   if (content.size() + 2 < opening.loop.size()) return std::nullopt;
@@ -494,12 +406,15 @@ std::optional<OpeningJob> Niches::flatten(const Opening& opening) const {
   }
   if (std::max(front, back) < covered * opening.area_m2 || is_sewn(mesh_, opening, content)) return std::nullopt;
   if (!PaneMaker{mesh_, opening, plane, content}.run(job.patch)) return std::nullopt;
+  job.kind = OpeningJob::Kind::Flatten;
   job.error_m = std::hypot(job.error_m, most_deviation(mesh_, content));
   return job;
 }
 
+namespace {
+
+// The wall closes over an opening that is flush or has nothing in it. Empty if something hangs on its outline.
 std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
-  if (!mesh.faces[opening.wall].live) return std::nullopt;
   const Plane plane = plane_of(mesh, opening);
   const MaterialId material = mesh.source->face_material(opening.wall);
   std::vector<FaceId> around;
@@ -547,6 +462,45 @@ std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
   shrink(around);
   shrink(filling);
   return job;
+}
+
+double key_of(const std::optional<OpeningJob>& job) {
+  return job ? job->key() : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Openings::Openings(const FacetMesh& mesh, bool closed)
+    : mesh_(mesh), closed_(closed), walls_(mesh), cells_(mesh), looked_at_(mesh.faces.size(), 0) {}
+
+void Openings::update() { cells_.update(walls_.update()); }
+
+// All that a pane may be made of.
+PointCells::Box Openings::box_of(const Opening& opening) const {
+  const Plane plane = plane_of(mesh_, opening);
+  PointCells::Box box;
+  for (const std::uint32_t p : opening.loop) {
+    box.add(glm::vec3{mesh_.at(p) - plane.normal * most_depth_m});
+    box.add(glm::vec3{mesh_.at(p) + plane.normal * most_height_m});
+  }
+  box.low -= static_cast<float>(margin_m);
+  box.high += static_cast<float>(margin_m);
+  return box;
+}
+
+std::optional<OpeningJob> Openings::job(const Opening& opening, double price, double most_error_m) {
+  if (!mesh_.faces[opening.wall].live) return std::nullopt;
+  std::uint64_t state = cells_.last_change(box_of(opening));
+  for (const std::uint32_t p : opening.loop) state = 31 * state + mesh_.version[p];
+  Known& known = known_[opening.loop];
+  if (known.state == state && known.key > price) return std::nullopt;
+  auto pane = flatten(opening);
+  auto closing = fill(mesh_, opening);
+  known = {state, std::min(key_of(pane), key_of(closing))};
+  const auto fits = [&](const auto& job) { return job && job->key() <= price && job->error_m <= most_error_m; };
+  if (fits(pane)) return pane;
+  if (fits(closing)) return closing;
+  return std::nullopt;
 }
 
 }  // namespace lodestone::facets

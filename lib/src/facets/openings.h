@@ -4,26 +4,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "facets/patch.h"
-#include "geometry/bvh.h"
+#include "facets/point_cells.h"
+#include "facets/walls.h"
 
 namespace lodestone::facets {
 
-// A hole in the faces of one plane and one material.
-struct Opening {
-  std::vector<std::uint32_t> loop;  // points, the wall to the left
-  FaceId wall = none;               // one of the faces around
-  double area_m2 = 0.0;
-  double perimeter_m = 0.0;
-};
-
-[[nodiscard]] std::vector<Opening> find_openings(const FacetMesh& mesh);
-
 // What is done with an opening, and its price.
 struct OpeningJob {
+  enum class Kind : std::uint8_t { Flatten, Fill };
+  Kind kind = Kind::Fill;
   Patch patch;
   double cost = 0.0;  // integral of squared distance
   double error_m = 0.0;
@@ -33,23 +27,35 @@ struct OpeningJob {
   }
 };
 
-// What stands in the opening becomes one pane in the plane of the wall, drawn between the corners of the hole: the pane
-// comes forward and hides the rest. Empty if the opening is not covered, if something holds it from outside, or if it
-// is flush.
-class Niches {
+// Remembers what each opening cost when it was looked at last, and looks again only where something has changed.
+class Openings {
  public:
   // A closed model is to stay closed.
-  Niches(const FacetMesh& mesh, bool closed);
-  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening) const;
+  Openings(const FacetMesh& mesh, bool closed);
+
+  // To be called when the mesh has changed.
+  void update();
+  // Small ones first.
+  [[nodiscard]] std::vector<Opening> all() const { return walls_.openings(); }
+  // What stands in it comes forward as a pane, or the wall closes over what is flush; empty if neither can be done at
+  // that price.
+  [[nodiscard]] std::optional<OpeningJob> job(const Opening& opening, double price, double most_error_m);
 
  private:
+  struct Known {
+    std::uint64_t state = 0;  // of the outline and of what is near
+    double key = 0.0;
+  };
+  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening);
+  [[nodiscard]] PointCells::Box box_of(const Opening& opening) const;
+
   const FacetMesh& mesh_;
   bool closed_;
-  std::vector<FaceId> face_of_;  // of the tree's faces
-  TriangleBvh tree_;
+  Walls walls_;
+  PointCells cells_;
+  std::map<std::vector<std::uint32_t>, Known> known_;  // by outline
+  std::vector<std::uint32_t> looked_at_;               // per face
+  std::uint32_t look_ = 0;
 };
-
-// The wall closes over an opening that is flush or has nothing in it. Empty if something hangs on its outline.
-[[nodiscard]] std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening);
 
 }  // namespace lodestone::facets

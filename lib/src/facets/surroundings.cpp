@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "facets/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::facets {
+namespace {
+
+constexpr std::size_t most_young = 8;  // the old tree stands until one face in so many has changed
+
+}  // namespace
+
+bool Surroundings::stands(FaceId f) const { return mesh_.faces[f].live && state_[f] == mesh_.state_of(f); }
+
+void Surroundings::plant(Grove& grove, std::vector<FaceId> faces) const {
+  std::vector<VertexId> indices;
+  indices.reserve(3 * faces.size());
+  for (const FaceId f : faces) {
+    indices.insert(indices.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+  }
+  grove.tree = TriangleBvh{mesh_.place, indices};
+  grove.faces = std::move(faces);
+}
+
+void Surroundings::update(const std::vector<std::uint32_t>& part_of) {
+  state_.resize(mesh_.faces.size(), 0);
+  std::vector<FaceId> live;
+  std::vector<FaceId> young;
+  for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
+    if (!mesh_.faces[f].live) continue;
+    live.push_back(f);
+    if (!stands(f)) young.push_back(f);
+  }
+  if (most_young * young.size() > live.size() || 2 * live.size() < old_.faces.size()) {
+    std::fill(state_.begin(), state_.end(), 0);
+    for (const FaceId f : live) state_[f] = mesh_.state_of(f);
+    plant(old_, std::move(live));
+    young.clear();
+  }
+  plant(young_, std::move(young));
+  for (Grove* grove : {&old_, &young_}) {
+    grove->part.resize(grove->faces.size());
+    for (std::size_t i = 0; i < grove->faces.size(); ++i) {
+      const FaceId f = grove->faces[i];
+      grove->part[i] = grove == &young_ || stands(f) ? part_of[f] : none;
+    }
+  }
+}
+
+Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t part, double limit_m) const {
+  Nearest best{limit_m, none};
+  for (const Grove* grove : {&old_, &young_}) {
+    const auto other = [&](FaceId i) { return grove->part[i] != part && grove->part[i] != none; };
+    const TriangleBvh::Nearest found = grove->tree.nearest_of(p, best.distance_m, other);
+    if (found.face != none) best = {std::sqrt(found.squared_distance), grove->faces[found.face]};
+  }
+  return best.face == none ? Nearest{} : best;
+}
+
+bool Surroundings::lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part,
+                               double limit_m) const {
+  bool found = false;
+  for (const Grove* grove : {&old_, &young_}) {
+    const auto across_it = [&](FaceId i) {
+      return grove->part[i] != part && grove->part[i] != none &&
+             std::abs(glm::dot(mesh_.faces[grove->faces[i]].normal, across)) > 0.7;
+    };
+    grove->tree.within(p, limit_m, across_it, [&](FaceId i) {
+      const Face& face = mesh_.faces[grove->faces[i]];
+      const glm::dvec3 a = mesh_.at(face.point[0]);
+      const double d = std::sqrt(squared_distance_to_triangle(p, a, mesh_.at(face.point[1]), mesh_.at(face.point[2])));
+      found = d <= std::abs(glm::dot(p - a, face.normal)) + 1e-3;
+      return !found;
+    });
+    if (found) return true;
+  }
+  return false;
+}
+
+}  // namespace lodestone::facets
