@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-constexpr int build_version = 1;  // of what tiles look like; raise it when they change
+constexpr int build_version = 2;  // of what tiles look like; raise it when they change
 
 double thread_seconds() {
   timespec now{};
@@ -262,6 +262,7 @@ Status wrap_as_b3dm(const fs::path& glb, const fs::path& file) {
 
 Status OutcropWriter::write_tile(std::uint32_t tile, std::span<const SegmentImages* const> images) {
   TileContent content = pyramid_->content(tile);
+  pyramid_->add_skirt(tile, content.mesh);
   content.mesh.origin = glm::dvec3{0.0};  // the root's transform carries it
   content.mesh.crs.clear();
   if (!content.texture.pieces.empty()) {

@@ -81,7 +81,17 @@ struct OutcropTile {
   Box bounds;            ///< of its own triangles and of all below, relative to the origin
   double error_m = 0.0;  ///< the larger of measured deviation and texel size; 0 at level 0; parents have more
   double texel_m = 0.0;  ///< mean size of its texels on the rock; 0 if untextured
+  double gap_m = 0.0;    ///< its border lies no farther than this from that of a finer neighbour; 0 at level 0
+  double skirt_m = 0.0;  ///< depth of its skirt: the gap of the tile two levels up
 };
+
+/// Materials of skirts are copies of those of the surface under this name.
+inline constexpr const char* skirt_name = "lodestone:skirt";
+/// Triangles that are surface and not skirt.
+[[nodiscard]] std::uint32_t surface_triangle_count(const Mesh& mesh) noexcept;
+[[nodiscard]] inline bool is_skirt(const Mesh& mesh, FaceId face) noexcept {
+  return !mesh.face_materials.empty() && mesh.materials[mesh.face_materials[face]].name == skirt_name;
+}
 
 /// Of one level over all tiles.
 struct OutcropLevel {
@@ -143,20 +153,34 @@ class OutcropPyramid {
   /// gutters. Materials keep their looks; those with a texture share the tile's. O(tile). Any thread.
   [[nodiscard]] TileContent content(std::uint32_t tile) const;
 
+  /// Adds a strip along every border with another tile to the tile's mesh as content() made it: from the border
+  /// outwards under the neighbour by `gap_m` and down into the rock by `skirt_m`. Beside a neighbour of another level
+  /// the two strips meet below the gap, so no sky shows through it. Two triangles a border edge, of materials of their
+  /// own (is_skirt()); their texels are those of the border.
+  void add_skirt(std::uint32_t tile, Mesh& mesh) const;
+
   /// For each pixel of a segment's used part, row by row: whether a source triangle shows it, or one next to it.
   [[nodiscard]] std::vector<bool> coverage(std::uint32_t segment) const;
 
  private:
   friend class OutcropBuilder;
+  friend class SkirtMaker;
   friend class TileDraft;
   OutcropPyramid() = default;
 
+  struct BorderPoint {
+    glm::vec3 position{0.0F};
+    glm::vec3 normal{0.0F};  // over the faces of all tiles there
+    bool on_rim = false;     // of the outcrop itself
+  };
   struct LevelMesh {
     VertexArrays vertices;
     std::vector<VertexId> indices;  // faces of a tile follow each other
     std::vector<MaterialId> face_materials;
-    std::vector<FeatureId> face_features;   // empty if the source has none
-    std::vector<std::uint32_t> first_face;  // per tile of the level, and one past the end
+    std::vector<FeatureId> face_features;    // empty if the source has none
+    std::vector<std::uint8_t> face_borders;  // per face: bit k if the edge from corner k lies between two tiles
+    std::vector<BorderPoint> border_points;  // ascending by position
+    std::vector<std::uint32_t> first_face;   // per tile of the level, and one past the end
   };
   Surroundings surroundings_;
   std::vector<std::uint32_t> segment_of_material_;

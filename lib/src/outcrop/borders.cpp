@@ -2,6 +2,7 @@
 #include "outcrop/borders.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "mesh/edges.h"
 
@@ -30,10 +31,29 @@ Borders find_borders(std::span<const VertexId> indices, const Weld& weld,
       result.edges.push_back({static_cast<std::uint32_t>(uses[i].edge >> 32U), static_cast<std::uint32_t>(uses[i].edge),
                               uses[end - 1].owner, uses[end].owner});
     }
-    if (end == i + 1) ++result.open_edges;
+    if (end == i + 1) {
+      ++result.open_edges;
+      result.open_points.push_back(static_cast<std::uint32_t>(uses[i].edge >> 32U));
+      result.open_points.push_back(static_cast<std::uint32_t>(uses[i].edge));
+    }
     i = end;
   }
   return result;
+}
+
+std::vector<std::uint8_t> border_bits(std::span<const VertexId> indices, const Weld& weld,
+                                      std::span<const BorderEdge> edges) {
+  std::vector<std::uint8_t> bits(indices.size() / 3, 0);
+  for (CornerId c = 0; c < indices.size(); ++c) {
+    const std::uint32_t p = weld.point_of[indices[c]];
+    const std::uint32_t q = weld.point_of[indices[next_corner(c)]];
+    const std::pair<std::uint32_t, std::uint32_t> key{std::min(p, q), std::max(p, q)};
+    const auto at = std::lower_bound(edges.begin(), edges.end(), key, [](const BorderEdge& e, const auto& k) {
+      return std::pair{e.a, e.b} < k;
+    });
+    if (at != edges.end() && std::pair{at->a, at->b} == key) bits[c / 3] |= static_cast<std::uint8_t>(1U << (c % 3));
+  }
+  return bits;
 }
 
 }  // namespace lodestone::outcrop

@@ -17,12 +17,21 @@ struct BorderEdge {
 };
 
 struct Borders {
-  std::vector<BorderEdge> edges;  // ascending by (a, b)
-  std::uint32_t open_edges = 0;   // used by one face
+  std::vector<BorderEdge> edges;           // ascending by (a, b)
+  std::uint32_t open_edges = 0;            // used by one face
+  std::vector<std::uint32_t> open_points;  // their ends, some more than once
 };
 
 // `owner_of_face` is per face. O(n log n).
 [[nodiscard]] Borders find_borders(std::span<const VertexId> indices, const Weld& weld,
                                    std::span<const std::uint32_t> owner_of_face);
+
+[[nodiscard]] inline bool is_before(const glm::vec3& a, const glm::vec3& b) noexcept {
+  return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);
+}
+
+// Per face: bit k is set if the edge from its corner k to the next is one of `edges`.
+[[nodiscard]] std::vector<std::uint8_t> border_bits(std::span<const VertexId> indices, const Weld& weld,
+                                                    std::span<const BorderEdge> edges);
 
 }  // namespace lodestone::outcrop

@@ -76,10 +76,12 @@ class OutcropBuilder {
   void place_faces();
   void find_source_borders();
   [[nodiscard]] std::vector<std::uint32_t> tile_of_faces() const;
+  void keep_borders(const Weld& weld, const outcrop::Borders& borders);
   void measure_level();
   void describe_tile(std::uint32_t local);
   void weigh_cells();
   void link_children();
+  void widen_skirts();
   [[nodiscard]] double bytes_of_front() const;
   [[nodiscard]] Status climb();
   [[nodiscard]] double texture_ratio() const {
@@ -255,6 +257,34 @@ std::vector<std::uint32_t> OutcropBuilder::tile_of_faces() const {
   return result;
 }
 
+// What skirts will need of the newest level.
+void OutcropBuilder::keep_borders(const Weld& weld, const outcrop::Borders& borders) {
+  OutcropPyramid::LevelMesh& level = out_->meshes_.back();
+  level.face_borders = outcrop::border_bits(level.indices, weld, borders.edges);
+  std::vector<std::uint32_t> place(weld.point_count(), none);
+  for (const outcrop::BorderEdge& edge : borders.edges) {
+    for (const std::uint32_t point : {edge.a, edge.b}) {
+      if (place[point] != none) continue;
+      place[point] = static_cast<std::uint32_t>(level.border_points.size());
+      level.border_points.push_back({.position = level.vertices.positions[weld.first_vertex[point]]});
+    }
+  }
+  for (const std::uint32_t point : borders.open_points) {
+    if (place[point] != none) level.border_points[place[point]].on_rim = true;
+  }
+  for (std::size_t c = 0; c < level.indices.size(); ++c) {
+    const std::uint32_t at = place[weld.point_of[level.indices[c]]];
+    if (at == none) continue;
+    const VertexId* v = &level.indices[c - c % 3];
+    const auto& p = level.vertices.positions;
+    const glm::vec3 area = glm::cross(p[v[1]] - p[v[0]], p[v[2]] - p[v[0]]);
+    const float size = glm::length(area);
+    if (size > 0.0F) level.border_points[at].normal += area / size;
+  }
+  std::sort(level.border_points.begin(), level.border_points.end(),
+            [](const auto& a, const auto& b) { return outcrop::is_before(a.position, b.position); });
+}
+
 // Borders of the newest level, and how far it is from the source.
 void OutcropBuilder::measure_level() {
   const OutcropPyramid::LevelMesh& source = out_->meshes_.front();
@@ -270,6 +300,7 @@ void OutcropBuilder::measure_level() {
     const auto touches = [&](std::size_t k) { return on_border[weld.point_of[level.indices[c + k]]] != 0; };
     if (touches(0) || touches(1) || touches(2)) ++info.border_triangles;
   }
+  keep_borders(weld, borders);
   deviations_.assign(tile_count(), {});
   if (out_->meshes_.size() == 1) return;
   std::vector<std::uint32_t> of_source;
@@ -345,6 +376,24 @@ void OutcropBuilder::link_children() {
     double& error_m = out_->tiles_[here + i].error_m;
     if (out_->levels_.size() > 1) error_m = std::max(error_m, border_slack * (deviations_[i].border_m + below_m[i]));
     borders_below_m_.push_back(std::max(below_m[i], deviations_[i].border_m));
+    out_->tiles_[here + i].gap_m = border_slack * (deviations_[i].border_m + below_m[i]);
+  }
+}
+
+// A tile may meet neighbours that are coarser than itself: its skirt is deep enough for those up to two levels up.
+void OutcropBuilder::widen_skirts() {
+  std::vector<OutcropTile>& tiles = out_->tiles_;
+  for (OutcropTile& tile : tiles) {  // children stand before their parents
+    if (tile.parent != none) tiles[tile.parent].gap_m = std::max(tiles[tile.parent].gap_m, tile.gap_m);
+  }
+  constexpr int levels_up = 2;
+  constexpr double longest = 2.3;  // a strip's diagonal at a corner, at most
+  for (OutcropTile& tile : tiles) {
+    const OutcropTile* above = &tile;
+    for (int i = 0; i < levels_up && above->parent != none; ++i) above = &tiles[above->parent];
+    tile.skirt_m = above->gap_m;
+    tile.bounds.add(tile.bounds.min - longest * tile.skirt_m);
+    tile.bounds.add(tile.bounds.max + longest * tile.skirt_m);
   }
 }
 
@@ -409,6 +458,7 @@ Status OutcropBuilder::climb() {
     if (out_->levels_.size() >= most_levels) break;
   }
   if (context_.cancelled()) return cancelled;
+  widen_skirts();
   return Done{};
 }
 
@@ -441,7 +491,8 @@ std::size_t OutcropPyramid::memory_bytes() const noexcept {
     const VertexArrays& v = level.vertices;
     bytes += v.positions.size() * sizeof(glm::vec3) + v.normals.size() * sizeof(glm::vec3) +
              v.uvs.size() * sizeof(glm::vec2) + v.colors.size() * sizeof(glm::u8vec4) +
-             (level.indices.size() + level.face_materials.size() + level.face_features.size()) * sizeof(std::uint32_t);
+             (level.indices.size() + level.face_materials.size() + level.face_features.size()) * sizeof(std::uint32_t) +
+             level.face_borders.size() + level.border_points.size() * sizeof(BorderPoint);
   }
   return bytes;
 }

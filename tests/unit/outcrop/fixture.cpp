@@ -62,6 +62,20 @@ std::size_t open_edges(const std::vector<Mesh>& tiles) {
   return open;
 }
 
+void remove_skirts(Mesh& mesh) {
+  Mesh bare = mesh;
+  bare.indices.clear();
+  bare.face_materials.clear();
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) {
+    if (is_skirt(mesh, f)) continue;
+    for (std::size_t k = 0; k < 3; ++k) bare.indices.push_back(mesh.indices[3 * std::size_t{f} + k]);
+    bare.face_materials.push_back(mesh.face_materials[f]);
+  }
+  bare.face_features.clear();
+  remove_unused(bare);
+  mesh = std::move(bare);
+}
+
 std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator{folder}) {

@@ -21,6 +21,8 @@ namespace lodestone::test {
 // Edges with one triangle of the tiles of a level together, by the bits of positions.
 [[nodiscard]] std::size_t open_edges(const std::vector<Mesh>& tiles);
 
+void remove_skirts(Mesh& mesh);
+
 // Name below the folder to content.
 [[nodiscard]] std::map<std::string, std::string> files_of(const std::filesystem::path& folder);
 
