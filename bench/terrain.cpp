@@ -56,9 +56,9 @@ std::vector<TileLattice> read_tiles(const std::string& file) {
 enum class Method { Greedy, Collapse };
 
 Tin make(const TileLattice& lattice, double tolerance_m, double step_m, Method method) {
-  std::vector<Post> chain;
+  std::vector<Tin::Vertex> chain;
   for (const Side side : all_sides) {
-    for (const int t : border_chain(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(post_of(side, t));
+    for (const Tin::Vertex& vertex : border_vertices(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(vertex);
   }
   if (method == Method::Greedy) {
     return greedy_insertion(lattice, chain, {.tolerance_m = tolerance_m, .step_m = step_m}).tin;

@@ -97,6 +97,18 @@ std::vector<int> border_chain(const TileLattice& lattice, Side side, const Chain
   return Chain{lattice, side, options}.vertices();
 }
 
+Tin::Vertex border_vertex(const TileLattice& lattice, Post post, double step_m) {
+  return {quantized(post.x), quantized(post.y), snapped_m(lattice.vertex_height_m(post), step_m)};
+}
+
+std::vector<Tin::Vertex> border_vertices(const TileLattice& lattice, Side side, const ChainOptions& options) {
+  std::vector<Tin::Vertex> vertices;
+  for (const int t : border_chain(lattice, side, options)) {
+    vertices.push_back(border_vertex(lattice, post_of(side, t), options.step_m));
+  }
+  return vertices;
+}
+
 double border_detail_m(const TileLattice& lattice, Side side) {
   double most_m = 0.0;
   const auto height_m = [&](int t) { return lattice.at(post_of(side, t).x, post_of(side, t).y); };

@@ -35,6 +35,12 @@ struct ChainOptions {
 // Ascending post numbers of the vertices along a side. None where neither tile has a cell with data.
 [[nodiscard]] std::vector<int> border_chain(const TileLattice& lattice, Side side, const ChainOptions& options);
 
+// The vertex at a post of a border, as both its tiles have it.
+[[nodiscard]] Tin::Vertex border_vertex(const TileLattice& lattice, Post post, double step_m);
+// The chain as vertices.
+[[nodiscard]] std::vector<Tin::Vertex> border_vertices(const TileLattice& lattice, Side side,
+                                                       const ChainOptions& options);
+
 // How far odd posts of the side stand off the straight line between their even neighbours: what the zoom above cannot
 // know of this border.
 [[nodiscard]] double border_detail_m(const TileLattice& lattice, Side side);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Based on: Lawson 1977, "Software for C1 surface interpolation" (insertion and flips).
-// Differs: integer coordinates below 2^14, so in-circle and orientation are exact in 64 bits; circles through four
-// vertices keep the edge that is there, so the result is a function of the order of insertion.
+// Differs: integer coordinates below 2^15, so all tests are exact; circles through four vertices keep the edge that is
+// there, so the result is a function of the order of insertion.
 #include "terrain/delaunay.h"
 
 #include <cassert>
@@ -9,8 +9,7 @@
 namespace lodestone::terrain {
 namespace {
 
-constexpr std::uint32_t next_of(std::uint32_t edge) { return edge % 3 == 2 ? edge - 2 : edge + 1; }
-constexpr std::uint32_t prev_of(std::uint32_t edge) { return edge % 3 == 0 ? edge + 2 : edge - 1; }
+__extension__ using Wide = __int128;
 
 // Whether d lies inside the circle through a, b, c (counter-clockwise).
 bool in_circle(Post a, Post b, Post c, Post d) {
@@ -18,7 +17,7 @@ bool in_circle(Post a, Post b, Post c, Post d) {
   const std::int64_t bx = b.x - d.x, by = b.y - d.y;
   const std::int64_t cx = c.x - d.x, cy = c.y - d.y;
   const std::int64_t aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
-  return aa * (bx * cy - by * cx) - bb * (ax * cy - ay * cx) + cc * (ax * by - ay * bx) > 0;
+  return Wide{aa} * (bx * cy - by * cx) - Wide{bb} * (ax * cy - ay * cx) + Wide{cc} * (ax * by - ay * bx) > 0;
 }
 
 }  // namespace
@@ -68,11 +67,11 @@ void LatticeDelaunay::set_triangle(std::uint32_t triangle, std::uint32_t a, std:
 
 std::uint32_t LatticeDelaunay::locate(Post post, std::uint32_t near) const {
   std::uint32_t t = near;
-  for (std::uint32_t turn = 0;; ++turn) {
+  // A walk may circle where edges are kept that are not Delaunay, unless chance decides which side it looks at first.
+  for (std::uint32_t chance = 0;; chance = chance * 1664525U + 1013904223U) {
     std::uint32_t leave = outside;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      // Starting at another edge each time keeps the walk from circling.
-      const std::uint32_t e = 3 * t + (i + turn) % 3;
+      const std::uint32_t e = 3 * t + (i + (chance >> 16U)) % 3;
       if (cross(posts_[corners_[e]], posts_[corners_[next_of(e)]], post) < 0) {
         leave = e;
         break;
@@ -130,6 +129,11 @@ void LatticeDelaunay::split_edge(std::uint32_t edge, std::uint32_t vertex) {
     suspects_.insert(suspects_.end(), {3 * t + 1, 3 * added + 2});
     return added;
   };
+  if (kept(edge)) {
+    const std::uint32_t a = corners_[edge], b = corners_[next_of(edge)];
+    kept_.erase(pair_of(a, b));
+    kept_.insert({pair_of(a, vertex), pair_of(vertex, b)});
+  }
   const std::uint32_t mine = edge / 3;
   const std::uint32_t added = cut(edge);
   if (twin == outside) return;
@@ -147,7 +151,7 @@ void LatticeDelaunay::legalise(std::uint32_t edge) {
   if (twin == outside) return;
   const Post a = posts_[corners_[edge]], b = posts_[corners_[next_of(edge)]];
   const Post c = posts_[corners_[prev_of(edge)]], d = posts_[corners_[prev_of(twin)]];
-  if (!in_circle(a, b, c, d)) return;
+  if (!in_circle(a, b, c, d) || kept(edge)) return;
   flip(edge);
   // The vertex just inserted is c; after the flip the edges that face it begin at these places.
   suspects_.insert(suspects_.end(), {3 * (edge / 3) + 1, 3 * (twin / 3) + 1});

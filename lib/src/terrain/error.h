@@ -11,9 +11,12 @@
 namespace lodestone::terrain {
 
 struct TinError {
-  double max_m = 0.0;         // largest difference in height
-  std::vector<Post> too_far;  // posts off by more than the limit, by row and column; then, for every triangle that is
-                              // not sound, the post in the middle of its longest edge
+  struct Off {
+    Post post;
+    double off_m = 0.0;  // the TIN's height less the post's
+  };
+  double max_m = 0.0;             // largest difference in height
+  std::vector<Off> too_far;       // posts off by more than the limit, by row and column
   std::size_t covered_count = 0;  // posts that some triangle covers
   bool sound = true;              // every triangle is counter-clockwise with an area
 };

@@ -13,22 +13,17 @@ namespace lodestone::terrain {
 namespace {
 
 constexpr double scale_units = 1 << 28;
-// Crossings of rows and edges are fractions with denominators up to 256: this tells whole numbers from the others.
-constexpr double near_whole = 1e-3;
+constexpr double posts_per_unit = static_cast<double>(size) / quantized_max;
+// Posts on an edge belong to both triangles, whichever way sums are rounded.
+constexpr double slack = 1e-6;
 
-constexpr std::array<double, size + 1> reciprocals = [] {
-  std::array<double, size + 1> table{};
-  for (int i = 1; i <= size; ++i) table[static_cast<std::size_t>(i)] = 1.0 / i;
-  return table;
-}();
-
-int ceil_of(double x) { return static_cast<int>(x + 1.0 - near_whole); }  // x >= 0
-int floor_of(double x) { return static_cast<int>(x + near_whole); }
+int ceil_of(double x) { return static_cast<int>(x + 1.0 - slack); }  // x >= 0
+int floor_of(double x) { return static_cast<int>(x + slack); }
 
 }  // namespace
 
-HeightField::HeightField(const TileLattice& lattice, double step_m)
-    : lattice_{lattice}, step_m_{step_m}, heights_(std::size_t{stride} * stride) {
+HeightField::HeightField(const TileLattice& lattice, double step_m, bool on_posts)
+    : lattice_{lattice}, step_m_{step_m}, on_posts_{on_posts}, heights_(std::size_t{stride} * stride) {
   float low = std::numeric_limits<float>::infinity(), high = -low;
   bool complete = true;
   for (int y = 0; y <= size; ++y) {
@@ -57,8 +52,6 @@ HeightField::HeightField(const TileLattice& lattice, double step_m)
 }
 
 double HeightField::vertex_height_m(Post p) const noexcept { return snapped_m(lattice_.vertex_height_m(p), step_m_); }
-
-double HeightField::vertex_units(Post p) const noexcept { return (vertex_height_m(p) - base_m_) / unit_m_; }
 
 // Posts begin..end of a row, and the plane's height at the first and its rise from post to post.
 struct HeightField::Span {
@@ -100,44 +93,49 @@ void HeightField::scan_row(const Span& span, Worst& worst) const noexcept {
 }
 
 Worst HeightField::worst_post(Post a, Post b, Post c, double za, double zb, double zc) const noexcept {
-  // By Pick's theorem a triangle of this area has no post but its corners.
-  if (cross(a, b, c) == 1) return {};
-  // The plane through the vertices as they will be decoded.
-  const double ax = a.x + quantized_shift(a.x), ay = a.y + quantized_shift(a.y);
-  const double bx = b.x + quantized_shift(b.x) - ax, by = b.y + quantized_shift(b.y) - ay;
-  const double cx = c.x + quantized_shift(c.x) - ax, cy = c.y + quantized_shift(c.y) - ay;
+  const std::array<Post, 3> nearest{Post{nearest_post(a.x), nearest_post(a.y)},
+                                    Post{nearest_post(b.x), nearest_post(b.y)},
+                                    Post{nearest_post(c.x), nearest_post(c.y)}};
+  // By Pick's theorem a triangle between posts of this area has no post but its corners.
+  if (on_posts_ && cross(nearest[0], nearest[1], nearest[2]) == 1) return {};
+  struct Corner {
+    double x, y;
+  };
+  const Corner at_a{a.x * posts_per_unit, a.y * posts_per_unit};
+  Corner p = at_a, q{b.x * posts_per_unit, b.y * posts_per_unit}, r{c.x * posts_per_unit, c.y * posts_per_unit};
+  const double bx = q.x - p.x, by = q.y - p.y, cx = r.x - p.x, cy = r.y - p.y;
   const double inverse = 1.0 / (bx * cy - by * cx);
   const double rise_x = ((zb - za) * cy - (zc - za) * by) * inverse;
   const double rise_y = ((zc - za) * bx - (zb - za) * cx) * inverse;
 
   // By height: p lowest, r highest.
-  Post p = a, q = b, r = c;
   if (p.y > q.y) std::swap(p, q);
   if (q.y > r.y) std::swap(q, r);
   if (p.y > q.y) std::swap(p, q);
-  const double long_slope = (r.x - p.x) * reciprocals[static_cast<std::size_t>(r.y - p.y)];
-  const double low_slope = (q.x - p.x) * reciprocals[static_cast<std::size_t>(q.y - p.y)];
-  const double high_slope = (r.x - q.x) * reciprocals[static_cast<std::size_t>(r.y - q.y)];
+  // Not a number for level edges, on which no row is looked at.
+  const double long_slope = (r.x - p.x) / (r.y - p.y);
+  const double low_slope = (q.x - p.x) / (q.y - p.y);
+  const double high_slope = (r.x - q.x) / (r.y - q.y);
 
   Worst worst;
-  const int last = std::min(r.y, size - 1);
-  for (int y = std::max(p.y, 1); y <= last; ++y) {
+  const int last = std::min(floor_of(r.y), size - 1);
+  for (int y = std::max(ceil_of(p.y), 1); y <= last; ++y) {
     double left = p.x + (y - p.y) * long_slope;
-    double right = y < q.y || q.y == r.y ? p.x + (y - p.y) * low_slope : q.x + (y - q.y) * high_slope;
-    if (y == q.y) right = q.x;
+    double right = y < q.y ? p.x + (y - p.y) * low_slope : q.x + (y - q.y) * high_slope;
+    if (std::fabs(y - q.y) < slack) right = q.x;
     if (left > right) std::swap(left, right);
     Span span{.y = y, .begin = std::max(ceil_of(left), 1), .end = std::min(floor_of(right), size - 1)};
-    // Corners have the error that rounding leaves; they cannot be improved by inserting them again.
+    // Corners' own posts are met by their heights; inserting them again would not help.
     const auto is_corner = [&](int x) {
       const Post at{x, y};
-      return at == a || at == b || at == c;
+      return at == nearest[0] || at == nearest[1] || at == nearest[2];
     };
-    if (y == p.y || y == q.y || y == r.y) {
+    if (y == nearest[0].y || y == nearest[1].y || y == nearest[2].y) {
       while (span.begin <= span.end && is_corner(span.begin)) ++span.begin;
       while (span.begin <= span.end && is_corner(span.end)) --span.end;
     }
     if (span.begin > span.end) continue;
-    span.height = static_cast<std::int32_t>(za + (span.begin - ax) * rise_x + (y - ay) * rise_y);
+    span.height = static_cast<std::int32_t>(za + (span.begin - at_a.x) * rise_x + (y - at_a.y) * rise_y);
     // Steep slivers rise by more than an int holds from post to post, but have one post a row.
     if (span.end > span.begin) span.rise = static_cast<std::int32_t>(rise_x);
     scan_row(span, worst);

@@ -20,18 +20,20 @@ class HeightField {
  public:
   static constexpr int stride = size + 1;
 
-  // `step_m`: vertices' heights are multiples of it.
-  HeightField(const TileLattice& lattice, double step_m);
+  // `step_m`: vertices' heights are multiples of it. `on_posts`: triangles will have all corners at posts.
+  HeightField(const TileLattice& lattice, double step_m, bool on_posts);
 
   [[nodiscard]] double unit_m() const noexcept { return unit_m_; }
   [[nodiscard]] bool measured(int x, int y) const noexcept { return mask_.empty() || mask_[index(x, y)] != 0; }
 
-  // Height of the vertex at a post, metres above a base that the field keeps to itself; a multiple of the step plus it.
-  [[nodiscard]] double vertex_units(Post p) const noexcept;
+  // Units above a base that the field keeps to itself.
+  [[nodiscard]] double to_units(double height_m) const noexcept { return (height_m - base_m_) / unit_m_; }
+  [[nodiscard]] double to_m(double units) const noexcept { return base_m_ + units * unit_m_; }
+  // What a vertex at a post begins with, a multiple of the step.
   [[nodiscard]] double vertex_height_m(Post p) const noexcept;
 
-  // Largest error over posts inside or on the border of a triangle, those on the tile's border and its own corners
-  // excepted; of equal ones the first by row, then column. Corners counter-clockwise; heights by vertex_units().
+  // Largest error over the posts that a triangle covers, those on the tile's border and those nearest to its corners
+  // excepted; of equal ones the first by row, then column. Corners in quantised units, counter-clockwise.
   [[nodiscard]] Worst worst_post(Post a, Post b, Post c, double za, double zb, double zc) const noexcept;
 
  private:
@@ -42,6 +44,7 @@ class HeightField {
   void scan_row(const Span& span, Worst& worst) const noexcept;
   const TileLattice& lattice_;
   double step_m_;
+  bool on_posts_;
   double base_m_ = 0.0;
   double unit_m_ = 1.0;
   std::vector<std::int32_t> heights_;

@@ -17,27 +17,33 @@ namespace {
 
 class Greedy {
  public:
-  Greedy(const TileLattice& lattice, std::span<const Post> border, const GreedyOptions& options)
-      : lattice_{lattice}, field_{lattice, options.step_m}, triangulation_{size} {
-    limit_m_ = options.tolerance_m + 0.5 * options.step_m;
+  Greedy(const TileLattice& lattice, std::span<const Tin::Vertex> border, const GreedyOptions& options)
+      : lattice_{lattice}, step_m_{options.step_m}, field_{lattice, options.step_m, on_posts(border)} {
+    limit_m_ = options.tolerance_m + 0.5 * step_m_;
     tolerance_ = static_cast<std::int32_t>(std::min(options.tolerance_m / field_.unit_m(), 1e9));
-    for (const Post p : triangulation_.posts()) heights_.push_back(field_.vertex_units(p));
-    for (const Post p : border) add(p);
+    vertex_at_.assign(std::size_t{size + 1} * (size + 1), none);
+    for (const Post p : {Post{0, 0}, Post{size, 0}, Post{size, size}, Post{0, size}}) {
+      vertex_at_[place_of(p)] = static_cast<std::uint32_t>(heights_.size());
+      heights_.push_back(field_.to_units(field_.vertex_height_m(p)));
+    }
+    for (const Tin::Vertex& vertex : border) add_border(vertex);
     for (const Post p : options.inside) add(p);
   }
 
+  // Posts that are off still are those that a client decodes a little beside, on steep ground: a vertex there is too
+  // high or low by what is measured, another post becomes a vertex. Vertices are off by less each round where their
+  // neighbours are near, so in the end these are made vertices as well.
   [[nodiscard]] MeasuredTin run() {
     refine();
     MeasuredTin made{result(), {}};
     made.error = measure(made.tin, lattice_, limit_m_);
-    // Posts between places as they are and as they are quantised; few, and seldom.
-    constexpr int most_rounds = 16;
+    constexpr int most_rounds = 32, alone = 4;
     for (int round = 0; round < most_rounds && !made.error.too_far.empty(); ++round) {
-      const std::size_t before = heights_.size();
-      for (const Post p : made.error.too_far) {
-        if (p.x > 0 && p.x < size && p.y > 0 && p.y < size) add(p);
+      for (const TinError::Off& off : made.error.too_far) {
+        if (!inside(off.post)) continue;
+        if (!add(off.post)) heights_[vertex_at_[place_of(off.post)]] -= off.off_m / field_.unit_m();
+        if (round >= alone) add_around(off.post);
       }
-      if (heights_.size() == before) break;
       refine();
       made.tin = result();
       made.error = measure(made.tin, lattice_, limit_m_);
@@ -46,6 +52,12 @@ class Greedy {
   }
 
  private:
+  [[nodiscard]] static bool on_posts(std::span<const Tin::Vertex> border) {
+    return std::all_of(border.begin(), border.end(), [](const Tin::Vertex& vertex) {
+      return vertex.u == quantized(nearest_post(vertex.u)) && vertex.v == quantized(nearest_post(vertex.v));
+    });
+  }
+
   void refine() {
     scan();
     for (std::size_t top = buckets_.size(); top > 0;) {
@@ -56,7 +68,8 @@ class Greedy {
       }
       taken_.swap(bucket);
       for (const Candidate& candidate : taken_) {
-        if (triangulation_.version(candidate.triangle) == candidate.version) insert(candidate.post, candidate.triangle);
+        if (triangulation_.version(candidate.triangle) != candidate.version) continue;
+        if (vertex_at_[place_of(candidate.post)] == none) insert(candidate.post, candidate.triangle);
       }
       taken_.clear();
       top = std::max(top, scan() + 1);
@@ -76,20 +89,39 @@ class Greedy {
     std::uint32_t version = 0;
   };
 
-  [[nodiscard]] static bool is_corner(Post p) { return (p.x == 0 || p.x == size) && (p.y == 0 || p.y == size); }
+  [[nodiscard]] static bool inside(Post p) { return p.x > 0 && p.x < size && p.y > 0 && p.y < size; }
+  [[nodiscard]] static std::size_t place_of(Post p) {
+    return static_cast<std::size_t>(p.y) * (size + 1) + static_cast<std::size_t>(p.x);
+  }
 
   void insert(Post p, std::uint32_t near) {
     last_ = near;
-    triangulation_.insert(p, near);
-    heights_.push_back(field_.vertex_units(p));
+    vertex_at_[place_of(p)] = triangulation_.insert({quantized(p.x), quantized(p.y)}, near);
+    heights_.push_back(field_.to_units(field_.vertex_height_m(p)));
   }
-  void add(Post p) {
-    if (is_corner(p)) return;
-    const std::uint32_t t = triangulation_.locate(p, last_);
+  // False: it is a vertex already.
+  bool add(Post p) {
+    if (vertex_at_[place_of(p)] != none) return false;
+    insert(p, last_);
+    return true;
+  }
+  void add_border(const Tin::Vertex& vertex) {
+    const Post at{vertex.u, vertex.v};
+    const std::uint32_t t = triangulation_.locate(at, last_);
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (triangulation_.posts()[triangulation_.corners()[3 * t + k]] == p) return;
+      if (triangulation_.posts()[triangulation_.corners()[3 * t + k]] == at) return;
     }
-    insert(p, t);
+    last_ = t;
+    triangulation_.insert(at, t);
+    heights_.push_back(field_.to_units(vertex.height_m));
+  }
+  void add_around(Post p) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Post beside{p.x + dx, p.y + dy};
+        if (inside(beside) && lattice_.valid(beside.x, beside.y)) add(beside);
+      }
+    }
   }
 
   // Looks at all changed triangles; returns the highest bucket that got a candidate.
@@ -118,7 +150,7 @@ class Greedy {
     }
     const int x = (posts[v[0]].x + posts[v[1]].x + posts[v[2]].x) / 3;
     const int y = (posts[v[0]].y + posts[v[1]].y + posts[v[2]].y) / 3;
-    return lattice_.cell(std::min(x, size - 1), std::min(y, size - 1));
+    return lattice_.cell(std::min(x / 128, size - 1), std::min(y / 128, size - 1));
   }
 
   [[nodiscard]] Tin result() const {
@@ -131,7 +163,7 @@ class Greedy {
         if (name[v[k]] == none) {
           name[v[k]] = static_cast<std::uint32_t>(tin.vertices.size());
           const Post p = triangulation_.posts()[v[k]];
-          tin.vertices.push_back({quantized(p.x), quantized(p.y), field_.vertex_height_m(p)});
+          tin.vertices.push_back({p.x, p.y, snapped_m(field_.to_m(heights_[v[k]]), step_m_)});
         }
         tin.triangles.push_back(name[v[k]]);
       }
@@ -140,11 +172,13 @@ class Greedy {
   }
 
   const TileLattice& lattice_;
+  double step_m_;
   HeightField field_;
-  LatticeDelaunay triangulation_;
+  LatticeDelaunay triangulation_{quantized_max};
   double limit_m_ = 0.0;
   std::int32_t tolerance_ = 0;                                // in units of the field
-  std::vector<double> heights_;                               // per vertex
+  std::vector<double> heights_;                               // per vertex, in units of the field
+  std::vector<std::uint32_t> vertex_at_;                      // per post; not of those on the border between corners
   std::array<std::vector<Candidate>, bucket_count> buckets_;  // those of triangles that changed since do not count
   std::vector<Candidate> taken_;
   std::uint32_t last_ = 0;
@@ -152,7 +186,8 @@ class Greedy {
 
 }  // namespace
 
-MeasuredTin greedy_insertion(const TileLattice& lattice, std::span<const Post> border, const GreedyOptions& options) {
+MeasuredTin greedy_insertion(const TileLattice& lattice, std::span<const Tin::Vertex> border,
+                             const GreedyOptions& options) {
   return Greedy{lattice, border, options}.run();
 }
 

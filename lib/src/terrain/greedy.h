@@ -23,9 +23,9 @@ struct MeasuredTin {
   TinError error;
 };
 
-// `border`: posts on the four sides, any order; corners may be left out. Only triangles over cells with data are
+// `border`: vertices on the four sides, any order; corners may be left out. Only triangles over cells with data are
 // returned, and only vertices that they use, in the order of their use.
-[[nodiscard]] MeasuredTin greedy_insertion(const TileLattice& lattice, std::span<const Post> border,
+[[nodiscard]] MeasuredTin greedy_insertion(const TileLattice& lattice, std::span<const Tin::Vertex> border,
                                            const GreedyOptions& options);
 
 // Posts inside the tile at which cells with data meet cells without. Where they are vertices, together with a border

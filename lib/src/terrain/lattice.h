@@ -13,6 +13,7 @@ namespace lodestone::terrain {
 
 inline constexpr int size = tile_intervals;  // posts 0..size along a side
 
+// In posts of the tile, or in quantised units.
 struct Post {
   int x = 0;
   int y = 0;
@@ -30,6 +31,9 @@ struct Post {
 [[nodiscard]] constexpr double quantized_shift(int post) noexcept {
   return static_cast<double>(post <= size / 2 ? post : post - size) / quantized_max;
 }
+
+// The post nearest to a quantised coordinate.
+[[nodiscard]] constexpr int nearest_post(int quantised) noexcept { return (quantised + 64) / 128; }
 
 class TileLattice {
  public:

@@ -32,7 +32,8 @@ Status TileBuilder::read_posts() {
 void TileBuilder::plan_borders() {
   const ChainOptions options{zoom_.tolerance_m, zoom_.step_m, static_cast<int>(zoom_.divisions)};
   for (const Side side : all_sides) {
-    for (const int t : border_chain(lattice_, side, options)) border_.push_back(post_of(side, t));
+    const std::vector<Tin::Vertex> vertices = border_vertices(lattice_, side, options);
+    border_.insert(border_.end(), vertices.begin(), vertices.end());
     detail_m_ = std::max(detail_m_, border_detail_m(lattice_, side));
   }
 }
@@ -45,6 +46,7 @@ void TileBuilder::fill_placeholder() {
     }
   }
   placeholder_ = true;
+  std::vector<Post> more;
   const int spacing = size / static_cast<int>(zoom_.divisions);
   for (const Side side : all_sides) {
     for (int t = 0; t <= size; ++t) {
@@ -54,12 +56,13 @@ void TileBuilder::fill_placeholder() {
       };
       // Steps between what is known and what is not.
       const bool step = has_data(t) != has_data(t - 1) || has_data(t) != has_data(t + 1);
-      if (step || t % spacing == 0) border_.push_back(post_of(side, t));
+      if (step || t % spacing == 0) more.push_back(post_of(side, t));
     }
   }
   for (float& height_m : lattice_.heights()) {
     if (std::isnan(height_m)) height_m = 0.0F;
   }
+  for (const Post p : more) border_.push_back(border_vertex(lattice_, p, zoom_.step_m));
 }
 
 std::vector<Post> TileBuilder::fixed_posts() const {

@@ -31,7 +31,7 @@ class TileBuilder {
   const TerrainPyramid::Zoom& zoom_;
   TileId id_;
   terrain::TileLattice lattice_;
-  std::vector<terrain::Post> border_;
+  std::vector<terrain::Tin::Vertex> border_;
   double detail_m_ = 0.0;
   bool placeholder_ = false;
 };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "heights.h"
 #include "terrain/chains.h"
@@ -15,12 +16,12 @@ using lodestone::test::lattice_of;
 
 namespace {
 
-std::vector<Post> all_borders(const TileLattice& lattice, double tolerance_m) {
-  std::vector<Post> posts;
+std::vector<Tin::Vertex> all_borders(const TileLattice& lattice, double tolerance_m) {
+  std::vector<Tin::Vertex> vertices;
   for (const Side side : all_sides) {
-    for (const int t : border_chain(lattice, side, {tolerance_m, 0.25, 1})) posts.push_back(post_of(side, t));
+    for (const Tin::Vertex& vertex : border_vertices(lattice, side, {tolerance_m, 0.25, 1})) vertices.push_back(vertex);
   }
-  return posts;
+  return vertices;
 }
 
 TileLattice hills() {
@@ -66,6 +67,42 @@ TEST_CASE("no vertex lies inside the circle of a triangle, and the triangles til
   CHECK(area == 2 * side * side);
 }
 
+TEST_CASE("lines that are kept are edges, whatever is inserted afterwards") {
+  LatticeDelaunay triangulation{1000};
+  std::set<std::pair<int, int>> taken;
+  const auto scatter = [&](int i) {
+    const std::uint64_t random = mix64(static_cast<std::uint64_t>(i));
+    const Post p{1 + static_cast<int>(random % 998), 1 + static_cast<int>(random / 1024 % 998)};
+    if (taken.emplace(p.x, p.y).second) triangulation.insert(p, 0);
+  };
+  for (int i = 0; i < 300; ++i) scatter(i);
+  // Lines that do not cross; every other one passes vertices on its way.
+  std::vector<std::array<std::uint32_t, 2>> lines;
+  for (int y = 99; y < 950; y += 100) {
+    const bool level = y % 200 == 99;
+    for (int x = 100; level && x < 900; x += 100) {
+      if (taken.emplace(x, y).second) triangulation.insert({x, y}, 0);
+    }
+    lines.push_back({triangulation.insert({0, y}, 0), triangulation.insert({1000, y + (level ? 0 : 50)}, 0)});
+    triangulation.keep_line(lines.back()[0], lines.back()[1]);
+  }
+  for (int i = 300; i < 900; ++i) scatter(i);
+  const auto& posts = triangulation.posts();
+  const auto& corners = triangulation.corners();
+  std::int64_t area = 0, line_length = 0, kept_length = 0;
+  for (const auto& [a, b] : lines) line_length += posts[b].x - posts[a].x;
+  for (std::uint32_t e = 0; e < corners.size(); ++e) {
+    const std::uint32_t next = LatticeDelaunay::next_of(e), prev = LatticeDelaunay::prev_of(e);
+    if (e % 3 == 0) {
+      REQUIRE(cross(posts[corners[e]], posts[corners[next]], posts[corners[prev]]) > 0);
+      area += cross(posts[corners[e]], posts[corners[next]], posts[corners[prev]]);
+    }
+    if (triangulation.kept(e)) kept_length += std::abs(posts[corners[next]].x - posts[corners[e]].x);
+  }
+  CHECK(area == 2 * 1000 * 1000);
+  CHECK(kept_length == 2 * line_length);  // met from both sides
+}
+
 TEST_CASE("greedy insertion keeps every post within the tolerance, the coarser the fewer triangles") {
   const TileLattice lattice = hills();
   std::size_t before = 1U << 20U;
@@ -79,6 +116,20 @@ TEST_CASE("greedy insertion keeps every post within the tolerance, the coarser t
   }
 }
 
+TEST_CASE("the tolerance holds on cliffs, where a vertex that is decoded beside its post moves the ground by more") {
+  const bool noise = GENERATE(false, true);
+  const TileLattice lattice = lattice_of([&](int x, int y) {
+    const std::uint64_t random = mix64(static_cast<std::uint64_t>((y + 7) * 1000 + x + 7));
+    if (noise) return static_cast<double>(random % 8192);
+    return random % 61 == 0 ? 9000.0 : x + y > 300 ? 4000.0 * std::sin(0.9 * x) : 0.1 * x;
+  });
+  const double tolerance_m = 1.0;
+  const auto [tin, error] = greedy_insertion(lattice, all_borders(lattice, tolerance_m), {tolerance_m, 0.25});
+  CHECK(error.sound);
+  CHECK(error.max_m <= tolerance_m + 0.125);
+  CHECK(error.covered_count == 257 * 257);
+}
+
 TEST_CASE("the measured error of a flat tin is the height of its posts") {
   const TileLattice lattice = lattice_of([](int x, int y) { return x == 77 && y == 200 ? 12.5 : 0.0; });
   Tin tin;
@@ -89,7 +140,8 @@ TEST_CASE("the measured error of a flat tin is the height of its posts") {
   CHECK(error.max_m == 12.5);
   CHECK(error.covered_count == 257 * 257);
   REQUIRE(error.too_far.size() == 1);
-  CHECK(error.too_far[0] == Post{77, 200});
+  CHECK(error.too_far[0].post == Post{77, 200});
+  CHECK(error.too_far[0].off_m == -12.5);
   tin.triangles = {0, 2, 1, 0, 2, 3};
   CHECK_FALSE(measure(tin, lattice, 1.0).sound);
 }
