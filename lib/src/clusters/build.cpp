@@ -15,6 +15,7 @@
 #include "clusters/output.h"
 #include "clusters/simplify_group.h"
 #include "clusters/split.h"
+#include "clusters/walk.h"
 #include "mesh/weld.h"
 
 namespace lodestone {
@@ -22,7 +23,7 @@ namespace {
 
 using namespace clusters;
 
-constexpr std::uint32_t block_clusters = 64;  // of the first cut in space
+constexpr std::uint32_t block_clusters = 16;  // of the first cut in space
 constexpr std::uint32_t most_failures = 3;    // of a cluster's groups, then it is a root
 constexpr std::uint32_t most_levels = 64;
 
@@ -46,18 +47,44 @@ class Builder {
 
  private:
   void prepare() {
-    Weld weld = weld_by_position(source_.vertices.positions);
-    ground_.values = source_.vertices;
-    ground_.deviation_m.assign(weld.point_count(), 0.0F);
-    ground_.locked.assign(weld.point_count(), 0);
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
       const VertexId* v = &source_.indices[3 * std::size_t{f}];
       live_.faces.push_back({{v[0], v[1], v[2]}, f});
     }
+    const std::uint32_t full = options_.max_triangles - options_.max_triangles / 64;
+    blocks_ = cut_blocks(live_.faces, source_.vertices.positions, block_clusters * full, full);
+    number_vertices();
+    Weld weld = weld_by_position(ground_.values.positions);
+    ground_.deviation_m.assign(weld.point_count(), 0.0F);
+    ground_.locked.assign(weld.point_count(), 0);
     ground_.point_of = std::move(weld.point_of);
     find_border();
     diagonal_m_ = bounds(source_).diagonal_m();
     total_ = static_cast<double>(source_.triangle_count());
+  }
+
+  // In the order in which the faces use them.
+  void number_vertices() {
+    std::vector<VertexId> number(source_.vertex_count(), none);
+    std::vector<VertexId> order;
+    for (LiveFace& f : live_.faces) {
+      for (VertexId& v : f.vertex) {
+        if (number[v] == none) {
+          number[v] = static_cast<VertexId>(order.size());
+          order.push_back(v);
+        }
+        v = number[v];
+      }
+    }
+    const auto pick = [&](const auto& from, auto& to) {
+      if (from.empty()) return;
+      to.reserve(order.size());
+      for (const VertexId v : order) to.push_back(from[v]);
+    };
+    pick(source_.vertices.positions, ground_.values.positions);
+    pick(source_.vertices.normals, ground_.values.normals);
+    pick(source_.vertices.uvs, ground_.values.uvs);
+    pick(source_.vertices.colors, ground_.values.colors);
   }
 
   void find_border() {
@@ -76,12 +103,11 @@ class Builder {
   }
 
   void make_leaves() {
-    const std::uint32_t full = options_.max_triangles - options_.max_triangles / 64;
-    const std::vector<Range> blocks = cut_blocks(live_.faces, ground_, block_clusters * full, full);
-    std::vector<Pieces> pieces(blocks.size());
-    parallel_for_each(blocks.size(), 1, context_, [&](std::size_t i) {
-      pieces[i] = split({live_.faces.begin() + blocks[i].begin, live_.faces.begin() + blocks[i].end}, ground_,
+    std::vector<Pieces> pieces(blocks_.size());
+    parallel_for_each(blocks_.size(), 1, context_, [&](std::size_t i) {
+      pieces[i] = split({live_.faces.begin() + blocks_[i].begin, live_.faces.begin() + blocks_[i].end}, ground_,
                         options_.max_triangles);
+      for (const Range& c : pieces[i].clusters) put_in_order({pieces[i].faces.data() + c.begin, c.size()}, source_);
     });
     live_ = {};
     for (const Pieces& piece : pieces) {
@@ -161,7 +187,7 @@ class Builder {
   }
 
   void take_values(const GroupResult& result) {
-    if (end_of_.empty()) end_of_.assign(source_.vertex_count(), 0);
+    if (end_of_.empty()) end_of_.assign(ground_.values.size(), 0);
     for (std::uint32_t i = 0; i < result.vertices.size(); ++i) {
       const VertexId v = result.vertices[i];
       const std::uint32_t end = result.point[result.survivor[i]];
@@ -218,7 +244,8 @@ class Builder {
   Ground ground_;
   Live live_;
   std::vector<LiveFace> ended_;
-  std::vector<std::uint32_t> end_of_;  // per vertex of the source: place of its survivor in the group at hand
+  std::vector<Range> blocks_;          // of the faces of the source
+  std::vector<std::uint32_t> end_of_;  // per vertex of the ground: place of its survivor in the group at hand
   double diagonal_m_ = 0.0;
   double total_ = 0.0;
   double last_error_m_ = 0.0;

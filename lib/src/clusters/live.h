@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The mesh of the level at hand: faces between vertices of the source, whose values change from level to level.
+// The mesh of the level at hand: faces between vertices of the ground, whose values change from level to level.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace lodestone::clusters {
 
 struct LiveFace {
-  std::array<VertexId, 3> vertex{};  // of the source
+  std::array<VertexId, 3> vertex{};  // of the ground
   FaceId id = none;                  // of the source: material and feature
 };
 
@@ -32,7 +32,8 @@ struct Live {
   }
 };
 
-// What is known of the vertices and points of the source at the level at hand.
+// What is known, at the level at hand, of the vertices that the source uses and of the points where they lie. Numbered
+// anew, in the order of blocks in space, so that what is near lies near in memory.
 struct Ground {
   VertexArrays values;                  // per vertex
   std::vector<std::uint32_t> point_of;  // per vertex: points are places shared by vertices

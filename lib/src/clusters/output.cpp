@@ -2,7 +2,6 @@
 #include "clusters/output.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -19,68 +18,18 @@ Sphere sphere_around(std::span<const glm::vec3> places) {
   return sphere;
 }
 
-// Puts faces in an order in which each, where possible, lies at the one before or at one shortly before it, and begins
-// with the edge between: a file needs few bits for that.
-void walk(std::span<LiveFace> faces) {
-  using Edge = std::array<VertexId, 2>;
-  std::vector<std::pair<Edge, std::uint32_t>> edges;  // directed, and the corner where they begin
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    for (std::uint32_t k = 0; k < 3; ++k)
-      edges.push_back({{faces[f].vertex[k], faces[f].vertex[(k + 1) % 3]}, 3 * f + k});
-  }
-  std::sort(edges.begin(), edges.end());
-  std::vector<LiveFace> order;
-  std::vector<std::uint8_t> taken(faces.size(), 0);
-  std::vector<Edge> open;  // whose other side may be next
-  const auto take = [&](std::uint32_t f, std::uint32_t k) {
-    taken[f] = 1;
-    const auto& v = faces[f].vertex;
-    order.push_back({{v[k], v[(k + 1) % 3], v[(k + 2) % 3]}, faces[f].id});
-    const auto& o = order.back().vertex;
-    open.insert(open.end(), {{o[0], o[2]}, {o[2], o[1]}});
-  };
-  for (std::uint32_t next = 0; order.size() < faces.size();) {
-    if (open.empty()) {
-      while (taken[next] != 0) ++next;
-      open.push_back({faces[next].vertex[1], faces[next].vertex[0]});
-      take(next, 0);
-      continue;
-    }
-    const Edge edge = open.back();
-    open.pop_back();
-    auto at = std::lower_bound(edges.begin(), edges.end(), std::pair{edge, 0U});
-    for (; at != edges.end() && at->first == edge; ++at) {
-      if (taken[at->second / 3] != 0) continue;
-      take(at->second / 3, at->second % 3);
-      break;
-    }
-  }
-  std::copy(order.begin(), order.end(), faces.begin());
-}
-
 }  // namespace
 
 std::uint32_t Output::add_cluster(std::span<const LiveFace> faces, const VertexArrays& values, std::uint32_t level,
                                   GroupId maker) {
-  if (place_.empty()) place_.assign(source_.vertex_count(), none);
-  std::vector<LiveFace> sorted(faces.begin(), faces.end());
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const LiveFace& a, const LiveFace& b) {
-    return source_.face_material(a.id) < source_.face_material(b.id);
-  });
-  for (auto first = sorted.begin(); first != sorted.end();) {
-    const MaterialId material = source_.face_material(first->id);
-    const auto last =
-        std::find_if(first, sorted.end(), [&](const LiveFace& f) { return source_.face_material(f.id) != material; });
-    walk({first, last});
-    first = last;
-  }
+  if (place_.empty()) place_.assign(values.size(), none);
   VertexArrays& out = result_.vertices;
   Cluster cluster;
   cluster.level = level;
   cluster.vertices.begin = out.size();
   cluster.triangles.begin = static_cast<std::uint32_t>(result_.indices.size() / 3);
   cluster.sections.begin = static_cast<std::uint32_t>(result_.sections.size());
-  for (const LiveFace& f : sorted) {
+  for (const LiveFace& f : faces) {
     const auto triangle = static_cast<std::uint32_t>(result_.indices.size() / 3);
     const MaterialId material = source_.face_material(f.id);
     if (triangle == cluster.triangles.begin || result_.sections.back().material != material) {

@@ -14,7 +14,8 @@ class Output {
  public:
   explicit Output(const Mesh& source) : source_(source) {}
 
-  // Adds a cluster of faces between vertices whose present values are in `values`; returns its node draft.
+  // Adds a cluster of faces, put in order, between vertices whose present values are in `values`; returns its node
+  // draft.
   std::uint32_t add_cluster(std::span<const LiveFace> faces, const VertexArrays& values, std::uint32_t level,
                             GroupId maker);
 
@@ -23,7 +24,7 @@ class Output {
     groups_.emplace_back();
     return static_cast<GroupId>(groups_.size() - 1);
   }
-  // `end_of(v)`: where the simplification took vertex v of the source.
+  // `end_of(v)`: where the simplification took vertex v of the ground.
   template <class EndOf>
   void end_group(GroupId group, double error_m, const std::vector<std::uint32_t>& members,
                  const std::vector<std::uint32_t>& made, EndOf end_of) {
@@ -57,8 +58,8 @@ class Output {
   const Mesh& source_;
   ClusterGraph result_;
   std::vector<Cluster> clusters_;     // per node draft
-  std::vector<VertexId> vertex_of_;   // per vertex of the result: which one of the source it was
-  std::vector<std::uint32_t> place_;  // per vertex of the source, while it is looked for
+  std::vector<VertexId> vertex_of_;   // per vertex of the result: which one of the ground it was
+  std::vector<std::uint32_t> place_;  // per vertex of the ground, while it is looked for
   std::vector<NodeDraft> nodes_;
   std::vector<GroupDraft> groups_;
   std::vector<std::pair<std::uint32_t, std::string>> causes_;

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "clusters/face_graph.h"
 #include "clusters/split.h"
+#include "clusters/walk.h"
 #include "collapse/engine.h"
 #include "mesh/weld.h"
 
@@ -392,6 +393,7 @@ class Job {
     result_.values = std::move(ground.values);
     result_.faces = std::move(pieces.faces);
     result_.clusters = std::move(pieces.clusters);
+    for (const Range& c : result_.clusters) put_in_order({result_.faces.data() + c.begin, c.size()}, work_.source);
     result_.reduced = result_.clusters.size() < group_.clusters.size() ||
                       (group_.clusters.size() == 1 && result_.faces.size() * 2 <= faces_.size());
     if (!result_.reduced) result_.cause = "it could not be held by fewer clusters";

@@ -29,7 +29,7 @@ struct GroupResult {
   double error_m = 0.0;
   std::vector<LiveFace> faces;     // in order of clusters
   std::vector<Range> clusters;     // of `faces`
-  std::vector<VertexId> vertices;  // of the source, that the group uses
+  std::vector<VertexId> vertices;  // of the ground, that the group uses
   // Per element of `vertices`:
   VertexArrays values;               // after the simplification
   std::vector<std::uint32_t> point;  // after it

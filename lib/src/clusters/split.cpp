@@ -5,7 +5,7 @@
 #include "clusters/split.h"
 
 #include <algorithm>
-#include <numeric>
+#include <bit>
 
 #include "base/hash.h"
 #include "clusters/face_graph.h"
@@ -14,11 +14,18 @@ namespace lodestone::clusters {
 namespace {
 
 std::uint32_t vertex_count(std::span<const LiveFace> faces) {
-  std::vector<VertexId> vertices;
-  vertices.reserve(3 * faces.size());
-  for (const LiveFace& f : faces) vertices.insert(vertices.end(), f.vertex.begin(), f.vertex.end());
-  std::sort(vertices.begin(), vertices.end());
-  return static_cast<std::uint32_t>(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
+  std::vector<VertexId> table(std::bit_ceil(6 * faces.size() + 2), none);
+  const std::size_t mask = table.size() - 1;
+  std::uint32_t count = 0;
+  for (const LiveFace& f : faces) {
+    for (const VertexId v : f.vertex) {
+      std::size_t at = mix64(v) & mask;
+      while (table[at] != none && table[at] != v) at = (at + 1) & mask;
+      if (table[at] == none) ++count;
+      table[at] = v;
+    }
+  }
+  return count;
 }
 
 // Appends the faces in `parts` clusters, halving those with too many vertices.
@@ -98,13 +105,12 @@ Pieces split(std::vector<LiveFace> faces, const Ground& ground, std::uint32_t ma
   return out;
 }
 
-std::vector<Range> cut_blocks(std::vector<LiveFace>& faces, const Ground& ground, std::uint32_t block_faces,
-                              std::uint32_t cluster_faces) {
+std::vector<Range> cut_blocks(std::vector<LiveFace>& faces, std::span<const glm::vec3> positions,
+                              std::uint32_t block_faces, std::uint32_t cluster_faces) {
   std::vector<Place> places(faces.size());
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    const auto& p = ground.values.positions;
     const auto& v = faces[f].vertex;
-    places[f] = {(p[v[0]] + p[v[1]] + p[v[2]]) / 3.0F, f};
+    places[f] = {(positions[v[0]] + positions[v[1]] + positions[v[2]]) / 3.0F, f};
   }
   Blocks blocks{places, block_faces, cluster_faces};
   blocks.cut(0, places.size());

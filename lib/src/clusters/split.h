@@ -21,7 +21,7 @@ struct Pieces {
 
 // Cuts a mesh of any size into compact blocks of at most `block_faces`, each but the last in space a whole number of
 // clusters full. Returns where each begins; `faces` are put in order.
-[[nodiscard]] std::vector<Range> cut_blocks(std::vector<LiveFace>& faces, const Ground& ground,
+[[nodiscard]] std::vector<Range> cut_blocks(std::vector<LiveFace>& faces, std::span<const glm::vec3> positions,
                                             std::uint32_t block_faces, std::uint32_t cluster_faces);
 
 }  // namespace lodestone::clusters

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Based on: Karypis and Kumar 1998 (multilevel bisection), by their library METIS; this is the only file that names it.
-// Differs: METIS keeps sizes within a tolerance only. Here each bisection is followed by moves along its border, those
+// Differs: neighbours are joined here until a graph is small, because METIS, built for large graphs, takes longer for
+// that. METIS keeps sizes within a tolerance only. Here each bisection is followed by moves along its border, those
 // that lengthen it least first, until both sides can be cut into parts of the sizes asked for.
 #include "partition/graph_partition.h"
 
 #include <metis.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <queue>
@@ -20,8 +23,77 @@ namespace {
 // seed.
 std::mutex metis_door;
 
+constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
+
+// A graph, how much each of its vertices counts, and, where it was made by joining neighbours, which one each vertex of
+// the finer graph went into.
+struct Coarse {
+  WeightedGraph graph;
+  std::vector<std::int32_t> count;
+  std::vector<std::uint32_t> into;
+};
+
+// Below this METIS is fast enough by itself.
+constexpr std::uint32_t few_vertices = 500;
+
+// Joins each vertex with the neighbour that it hangs on most and that is still free, in the order of vertices.
+std::vector<std::uint32_t> join_neighbours(const WeightedGraph& graph, std::uint32_t& joined_count) {
+  std::vector<std::uint32_t> into(graph.size(), no_vertex);
+  joined_count = 0;
+  for (std::uint32_t v = 0; v < graph.size(); ++v) {
+    if (into[v] != no_vertex) continue;
+    std::int32_t most = 0;
+    std::uint32_t mate = v;
+    for (std::int32_t i = graph.first[v]; i != graph.first[v + 1]; ++i) {
+      const auto n = static_cast<std::uint32_t>(graph.neighbour[i]);
+      if (into[n] != no_vertex || graph.weight[i] <= most) continue;
+      most = graph.weight[i];
+      mate = n;
+    }
+    into[v] = into[mate] = joined_count++;
+  }
+  return into;
+}
+
+Coarse coarser(const WeightedGraph& fine, const std::vector<std::int32_t>& count) {
+  Coarse coarse;
+  std::uint32_t size = 0;
+  coarse.into = join_neighbours(fine, size);
+  coarse.count.assign(size, 0);
+  std::vector<std::array<std::uint32_t, 2>> members(size, {no_vertex, no_vertex});
+  for (std::uint32_t v = 0; v < fine.size(); ++v) {
+    const std::uint32_t c = coarse.into[v];
+    coarse.count[c] += count[v];
+    members[c][members[c][0] == no_vertex ? 0 : 1] = v;
+  }
+  WeightedGraph& graph = coarse.graph;
+  graph.first.reserve(std::size_t{size} + 1);
+  graph.first.push_back(0);
+  graph.neighbour.reserve(fine.neighbour.size());
+  graph.weight.reserve(fine.neighbour.size());
+  std::vector<std::int32_t> link_to(size, -1);  // place of the link, while it belongs to the vertex at hand
+  for (std::uint32_t c = 0; c < size; ++c) {
+    for (const std::uint32_t v : members[c]) {
+      if (v == no_vertex) continue;
+      for (std::int32_t i = fine.first[v]; i != fine.first[v + 1]; ++i) {
+        const std::uint32_t to = coarse.into[static_cast<std::size_t>(fine.neighbour[i])];
+        if (to == c) continue;
+        if (link_to[to] >= graph.first.back()) {
+          graph.weight[link_to[to]] += fine.weight[i];
+          continue;
+        }
+        link_to[to] = static_cast<std::int32_t>(graph.neighbour.size());
+        graph.neighbour.push_back(static_cast<std::int32_t>(to));
+        graph.weight.push_back(fine.weight[i]);
+      }
+    }
+    graph.first.push_back(static_cast<std::int32_t>(graph.neighbour.size()));
+  }
+  return coarse;
+}
+
 // Which vertices go to the second side, about `share` of them to the first; false if METIS could not.
-bool metis_bisect(WeightedGraph& graph, double share, std::vector<idx_t>& side) {
+bool metis_bisect(WeightedGraph& graph, std::vector<std::int32_t>& count, double share, std::vector<idx_t>& side) {
   auto vertices = static_cast<idx_t>(graph.size());
   idx_t constraints = 1;
   idx_t parts = 2;
@@ -32,9 +104,23 @@ bool metis_bisect(WeightedGraph& graph, double share, std::vector<idx_t>& side) 
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_UFACTOR] = 10;
   options[METIS_OPTION_NCUTS] = 1;
+  side.resize(graph.size());
   const std::lock_guard lock{metis_door};
-  return METIS_PartGraphRecursive(&vertices, &constraints, graph.first.data(), graph.neighbour.data(), nullptr, nullptr,
-                                  graph.weight.data(), &parts, shares, nullptr, options, &cut, side.data()) == METIS_OK;
+  return METIS_PartGraphRecursive(&vertices, &constraints, graph.first.data(), graph.neighbour.data(), count.data(),
+                                  nullptr, graph.weight.data(), &parts, shares, nullptr, options, &cut,
+                                  side.data()) == METIS_OK;
+}
+
+// The same by way of a graph of joined neighbours where there are many vertices.
+bool bisect(WeightedGraph& graph, std::vector<std::int32_t>& count, double share, std::vector<idx_t>& side) {
+  if (graph.size() <= few_vertices) return metis_bisect(graph, count, share, side);
+  Coarse coarse = coarser(graph, count);
+  if (coarse.graph.size() > graph.size() / 4 * 3) return metis_bisect(graph, count, share, side);  // hardly any links
+  std::vector<idx_t> coarse_side;
+  if (!bisect(coarse.graph, coarse.count, share, coarse_side)) return false;
+  side.resize(graph.size());
+  for (std::uint32_t v = 0; v < graph.size(); ++v) side[v] = coarse_side[coarse.into[v]];
+  return true;
 }
 
 // Moves vertices from one side to the other, the cheapest first.
@@ -96,8 +182,10 @@ class Partition {
     const std::uint32_t count = graph.size();
     const std::uint32_t left = parts / 2;
     const std::uint32_t right = parts - left;
-    std::vector<idx_t> side(count, 0);
-    if (!metis_bisect(graph, static_cast<double>(left) / parts, side)) {
+    std::vector<idx_t> side;
+    std::vector<std::int32_t> ones(count, 1);
+    if (!bisect(graph, ones, static_cast<double>(left) / parts, side)) {
+      side.assign(count, 0);
       for (std::uint32_t i = 0; i < count; ++i) side[i] = i < std::uint64_t{count} * left / parts ? 0 : 1;
     }
     const auto now = static_cast<std::uint32_t>(std::count(side.begin(), side.end(), 0));
