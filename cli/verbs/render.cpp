@@ -77,25 +77,10 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
 Result<render::Picture> Render::draw_tiles(Session& session, const render::RenderOptions& options) const {
   const auto pyramid = TilePyramid::open(input_.file());
   if (!pyramid) return pyramid.error();
-  TilePager pager{*pyramid};
-  const Mesh* root = pager.status().resident_tiles > 0 ? pager.content(0) : nullptr;
-  if (root == nullptr) return Error{ErrorCode::BadData, pager.status().failures.front(), input_.file().string()};
-  Mesh framed = *root;
-  framed.origin = (*pyramid)->origin();
-  const auto view = render::view_of_mesh(framed, options);
-  if (!view) return view.error();
-  std::vector<const Mesh*> tiles;
-  for (const NodeId tile : pager.settle(*view)) tiles.push_back(pager.content(tile));
-  std::vector<Warning> failures;
-  for (const std::string& line : pager.status().failures) failures.push_back({line, input_.file().string()});
-  session.keep(std::move(failures));
-  session.report().set("tiles", static_cast<std::uint32_t>(tiles.size()));
-  Mesh whole = merged(tiles);
-  whole.origin = (*pyramid)->origin();
-  render::RenderOptions same = options;
-  same.camera.eye_m = whole.origin + view->eye;
-  same.camera.target_m = whole.origin + view->eye + view->forward;
-  return render::render_mesh(whole, same);
+  auto picture = render::render_tiles(*pyramid, options);
+  if (!picture) return Error{picture.error().code, picture.error().message, input_.file().string()};
+  session.report().set("tiles", picture->tiles);
+  return picture;
 }
 
 Result<render::Picture> Render::draw(Session& session, const render::RenderOptions& options) const {
@@ -109,6 +94,7 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
                  input_.file().string()};
   }
   if (is_tileset_file(input_.file())) return draw_tiles(session, options);
+  if (input_.file().extension() == ".osgb") return is_for_openscenegraph(input_.file());
   const auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   return render::render_mesh(loaded->mesh, options);

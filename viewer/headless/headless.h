@@ -19,6 +19,7 @@
 #include <lodestone/mesh.h>
 #include <lodestone/progressive_model.h>
 #include <lodestone/result.h>
+#include <lodestone/tile_loader.h>
 #include <lodestone/view.h>
 
 #include "../render/options.h"
@@ -48,12 +49,17 @@ struct Picture {
   Image image;  ///< RGB
   std::uint32_t triangles = 0;
   double frame_seconds = 0.0;  ///< one frame, drawn again after a first one: without uploads and reading back
+  std::uint32_t tiles = 0;     ///< of a tileset
 };
 
 /// Errors: BadArgument for a picture size or angle out of range, Unsupported where OSMesa is missing or too old.
 [[nodiscard]] Result<Picture> render_mesh(const Mesh& mesh, const RenderOptions& options = {});
 [[nodiscard]] Result<Picture> render_level(std::shared_ptr<const ProgressiveModel> model, Level level,
                                            const RenderOptions& options = {});
+
+/// A tileset, with all tiles that the view needs at `pager.error_px`. What could not be read is told in warnings.
+[[nodiscard]] Result<Picture> render_tiles(std::shared_ptr<const TilePyramid> pyramid,
+                                           const RenderOptions& options = {}, const PagerOptions& pager = {});
 
 /// The view that render_mesh() takes of a mesh, relative to its origin: to choose tiles or clusters by, before drawing.
 [[nodiscard]] Result<View> view_of_mesh(const Mesh& mesh, const RenderOptions& options = {});

@@ -22,7 +22,8 @@ Renderer::SurfaceProgram::SurfaceProgram(Program p)
       up(program.uniform("up")),
       wire_px(program.uniform("wire_px")),
       lod_colors(program.uniform("lod_colors")),
-      model_size_m(program.uniform("model_size_m")) {}
+      model_size_m(program.uniform("model_size_m")),
+      share(program.uniform("share")) {}
 
 Result<Renderer> Renderer::create(const Gl& gl) {
   auto background = Program::create(gl, picture_vertex_shader, nullptr, background_fragment_shader);
@@ -114,6 +115,7 @@ void Renderer::set_item(const SurfaceProgram& program, const Item& item, const g
   const glm::mat4 to_eye{glm::translate(view, item.offset_m)};
   gl_->uniform_matrix_4fv(program.to_eye, 1, GL_FALSE, glm::value_ptr(to_eye));
   gl_->uniform_1i(program.has_normals, item.geometry->arrays().normals.empty() ? 0 : 1);
+  gl_->uniform_1f(program.share, item.share);
   gl_->uniform_1f(program.model_size_m, static_cast<float>(std::max(item.size_m, 1e-6)));
 }
 

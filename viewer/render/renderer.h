@@ -22,6 +22,7 @@ struct Item {
   const Surfaces* surfaces = nullptr;
   glm::dvec3 offset_m{0.0};  ///< where its origin lies in the frame of the view
   double size_m = 1.0;       ///< diagonal of the whole model: the scale of the LOD colours
+  float share = 1.0F;        ///< of its pixels, as TilePager::share(): below 1 while it comes, below 0 while it leaves
 };
 
 class Renderer {
@@ -41,7 +42,7 @@ class Renderer {
   struct SurfaceProgram {
     explicit SurfaceProgram(Program p);
     Program program;
-    GLint to_eye, to_clip, base_color, image, alpha_cutoff, has_normals, up, wire_px, lod_colors, model_size_m;
+    GLint to_eye, to_clip, base_color, image, alpha_cutoff, has_normals, up, wire_px, lod_colors, model_size_m, share;
   };
   struct BlendedTriangle {
     float depth;  ///< along the line of sight, larger is farther

@@ -71,6 +71,7 @@ uniform sampler2D image;      // decoded to linear by the sampler; white where t
 uniform float alpha_cutoff;
 uniform int has_normals;
 uniform vec3 up;              // the world's, in eye space
+uniform float share;          // of the pixels: below 1 where it comes, below 0 where it leaves
 #ifdef EDGES
 in vec3 f_barycentric;
 flat in float f_size_m;
@@ -113,8 +114,15 @@ float light(vec3 n) {
   return sky + 0.58 * max(dot(n, key), 0.0) + 0.16 * max(dot(n, fill), 0.0);
 }
 
+// Interleaved gradient noise (Jimenez 2014): even in every small neighbourhood.
+float noise(vec2 place) { return fract(52.9829189 * fract(dot(floor(place), vec2(0.06711056, 0.00583715)))); }
+
 void main() {
   vec4 texel = texture(image, f_uv);
+  if (share < 1.0) {
+    float n = noise(gl_FragCoord.xy);
+    if (share >= 0.0 ? n >= share : n < 1.0 + share) discard;
+  }
   float alpha = base_color.a * texel.a * f_color.a;
   if (alpha_cutoff > 0.0) {
     // Sharpened about the cutoff, so that the rim of a cut-out keeps its place in smaller mip levels.

@@ -85,7 +85,7 @@ Status App::take_loaded() {
   auto result = loader_.take();
   if (!result) return Done{};
   if (!result->ok()) {
-    if (!shown_ && loader_.file() == options_.file) return result->error();
+    if (!shown_ && !tiles_ && loader_.file() == options_.file) return result->error();
     message_ = to_line(result->error());
     return Done{};
   }
@@ -94,23 +94,18 @@ Status App::take_loaded() {
     message_ = std::to_string(result->warnings().size()) + " warnings, the first: " + to_line(warning);
     break;
   }
-  show(**result);
+  std::visit([&](const auto& opened) { show(opened); }, **result);
   return Done{};
 }
 
 void App::show(const Loader::Model& model) {
-  const bool first = !shown_;
+  const bool first = !shown_ && !tiles_;
   shown_.reset();
+  tiles_.reset();
   surfaces_ = std::make_unique<Surfaces>(*gl_, model->data());
   shown_ = std::make_unique<Shown>(*gl_, model, static_cast<double>(morph_seconds_), model->record_count());
   control_.attach(*model);
-  title_ = loader_.file().filename().string();
-  window_->set_title(title_ + " - Lodestone");
-  int width = 0;
-  int height = 0;
-  window_->framebuffer_size(width, height);
-  camera_.frame(model->bounds(), static_cast<std::uint32_t>(std::max(1, width)),
-                static_cast<std::uint32_t>(std::max(1, height)), detailed_yaw_rad(arrays_of(shown_->cursor)));
+  frame(model->bounds(), detailed_yaw_rad(arrays_of(shown_->cursor)));
   if (first && options_.ratio) {
     const auto finest = static_cast<double>(model->info(model->record_count()).triangles);
     control_.slider = control_.slider_of(static_cast<std::uint32_t>(std::lround(*options_.ratio * finest)));
@@ -120,6 +115,26 @@ void App::show(const Loader::Model& model) {
     control_.mode = LevelMode::Automatic;
     control_.max_error_px = 0.5F;
   }
+}
+
+void App::show(const Loader::Tiles& tiles) {
+  shown_.reset();
+  tiles_ = std::make_unique<TileScene>(*gl_, tiles);
+  control_.mode = LevelMode::Automatic;
+  control_.max_error_px = 1.0F;
+  for (const std::string& line : tiles_->status().failures) message_ = line;
+  frame(tiles->bounds(), tiles_->yaw_rad());
+}
+
+// What is new on the screen, from where all of it is seen.
+void App::frame(const Box& bounds, double yaw_rad) {
+  title_ = loader_.file().filename().string();
+  window_->set_title(title_ + " - Lodestone");
+  int width = 0;
+  int height = 0;
+  window_->framebuffer_size(width, height);
+  camera_.frame(bounds, static_cast<std::uint32_t>(std::max(1, width)), static_cast<std::uint32_t>(std::max(1, height)),
+                yaw_rad);
 }
 
 void App::use_input(double dt_s) {
@@ -133,6 +148,16 @@ void App::use_input(double dt_s) {
   if (drag.left || drag.other || wheel != 0.0) still_frames_ = 0;
   if (const auto file = window_->take_dropped_file(); !file.empty()) loader_.start(file);
   use_keys();
+  move_on(dt_s);
+}
+
+// The level, or the tiles, that the camera and the controls ask for.
+void App::move_on(double dt_s) {
+  if (tiles_) {
+    tiles_->set_error_px(double(control_.max_error_px));
+    tiles_->update(camera_.view(), dt_s);
+    still_frames_ = tiles_->still() ? still_frames_ + 1 : 0;
+  }
   if (!shown_) return;
   control_.drive(shown_->cursor, camera_.view(), dt_s);
   const StepResult step = shown_->cursor.step({}, dt_s);
@@ -192,6 +217,7 @@ PanelResult App::lay_out_panel(const View& view) {
     state.loading = loader_.file().filename().string() + ": " + loader_.stage();
     state.loading_fraction = loader_.fraction();
   }
+  state.tiles = tiles_.get();
   if (shown_) {
     const Cursor& cursor = shown_->cursor;
     state.cursor = &cursor;
@@ -209,7 +235,11 @@ void App::draw_frame() {
     bounds = shown_->model->bounds();
     item = Item{.geometry = &shown_->geometry, .surfaces = surfaces_.get(), .size_m = bounds.diagonal_m()};
   }
-  const std::span<const Item> items = item ? std::span<const Item>{&*item, 1} : std::span<const Item>{};
+  std::span<const Item> items = item ? std::span<const Item>{&*item, 1} : std::span<const Item>{};
+  if (tiles_) {
+    bounds = tiles_->bounds();
+    items = tiles_->items();
+  }
   renderer_.draw(*frame_, camera_.view(), bounds, items, look_);
   presenter_.present(*frame_, 0);
   panel_.draw();
@@ -218,8 +248,9 @@ void App::draw_frame() {
 }
 
 void App::obey(const PanelResult& asked) {
-  if (!shown_) return;
   if (asked.changed) still_frames_ = 0;
+  if (asked.frame_model && tiles_) frame(tiles_->bounds(), tiles_->yaw_rad());
+  if (!shown_) return;
   if (asked.frame_model) {
     const View view = camera_.view();
     camera_.frame(shown_->model->bounds(), view.width_px, view.height_px, detailed_yaw_rad(arrays_of(shown_->cursor)));
@@ -230,7 +261,7 @@ void App::obey(const PanelResult& asked) {
   }
 }
 
-bool App::settled() const { return shown_ && !loader_.busy() && still_frames_ >= 3; }
+bool App::settled() const { return (shown_ || tiles_) && !loader_.busy() && still_frames_ >= 3; }
 
 Status App::write_screenshot() {
   const FrameSize& size = frame_->size();

@@ -8,6 +8,7 @@
 
 #include "../render/frame.h"
 #include "../render/renderer.h"
+#include "../render/tile_scene.h"
 #include "glfw_window.h"
 #include "level_control.h"
 #include "loader.h"
@@ -36,6 +37,9 @@ class App {
       Presenter presenter);
   [[nodiscard]] Status take_loaded();
   void show(const Loader::Model& model);
+  void show(const Loader::Tiles& tiles);
+  void frame(const Box& bounds, double yaw_rad);
+  void move_on(double dt_s);
   void use_input(double dt_s);
   void use_keys();
   void draw_frame();
@@ -54,7 +58,8 @@ class App {
   Panel panel_;
   Loader loader_;
   std::unique_ptr<Surfaces> surfaces_;
-  std::unique_ptr<Shown> shown_;
+  std::unique_ptr<Shown> shown_;      ///< a model,
+  std::unique_ptr<TileScene> tiles_;  ///< or a tileset
   OrbitCamera camera_;
   LevelControl control_;
   FrameTimes frame_times_;

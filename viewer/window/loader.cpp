@@ -7,8 +7,18 @@
 namespace lodestone::render {
 namespace {
 
-Result<Loader::Model> open_model(const std::filesystem::path& file, const Context& context) {
-  if (is_model_file(file)) return read_model(file, {}, context);
+Result<Loader::Opened> open(const std::filesystem::path& file, const Context& context) {
+  if (file.extension() == ".osgb") return is_for_openscenegraph(file);
+  if (is_tileset_file(file)) {
+    auto tiles = TilePyramid::open(file);
+    if (!tiles) return tiles.error();
+    return Loader::Opened{std::move(*tiles)};
+  }
+  if (is_model_file(file)) {
+    auto model = read_model(file, {}, context);
+    if (!model) return model.error();
+    return {Loader::Opened{std::move(*model)}, std::move(model.warnings())};
+  }
   auto loaded = read_mesh(file, {}, context);
   if (!loaded) return loaded.error();
   Mesh& mesh = loaded->mesh;
@@ -17,7 +27,7 @@ Result<Loader::Model> open_model(const std::filesystem::path& file, const Contex
   }
   auto built = build_by_edge_collapse(mesh, {}, context);
   if (!built) return built.error();
-  return {std::move(built->model), std::move(loaded.warnings())};
+  return {Loader::Opened{std::move(built->model)}, std::move(loaded.warnings())};
 }
 
 }  // namespace
@@ -51,7 +61,7 @@ void Loader::load() {
     const std::lock_guard lock{mutex_};
     stage_ = stage;
   };
-  auto result = open_model(file_, context);
+  auto result = open(file_, context);
   const std::lock_guard lock{mutex_};
   result_ = std::move(result);
   busy_ = false;
@@ -62,7 +72,7 @@ std::string Loader::stage() const {
   return stage_;
 }
 
-std::optional<Result<Loader::Model>> Loader::take() {
+std::optional<Result<Loader::Opened>> Loader::take() {
   if (busy_) return std::nullopt;
   const std::lock_guard lock{mutex_};
   return std::exchange(result_, std::nullopt);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Opens files beside the frame loop: .lode files as they are, anything else is read and made into a model on the fly.
+// Opens files beside the frame loop: .lode files and tilesets as they are, anything else is read and made into a model
+// on the fly.
 #pragma once
 
 #include <atomic>
@@ -9,21 +10,25 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 
 #include <lodestone/progressive_model.h>
 #include <lodestone/result.h>
+#include <lodestone/tile_loader.h>
 
 namespace lodestone::render {
 
 class Loader {
  public:
   using Model = std::shared_ptr<const ProgressiveModel>;
+  using Tiles = std::shared_ptr<const TilePyramid>;
+  using Opened = std::variant<Model, Tiles>;
   ~Loader();
 
   /// Gives up what is under way and starts on `file`.
   void start(const std::filesystem::path& file);
   /// The result, once, when it is there.
-  [[nodiscard]] std::optional<Result<Model>> take();
+  [[nodiscard]] std::optional<Result<Opened>> take();
 
   [[nodiscard]] bool busy() const { return busy_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
@@ -41,7 +46,7 @@ class Loader {
   std::atomic<float> fraction_ = 0.0F;
   mutable std::mutex mutex_;  ///< guards the two below
   std::string stage_;
-  std::optional<Result<Model>> result_;
+  std::optional<Result<Opened>> result_;
 };
 
 }  // namespace lodestone::render

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
       "Shows a model at any level of detail; any mesh is made into a progressive model on opening.\n"
       "Example: lodestone-view house.lode"};
   double ratio = 0.0;
-  app.add_option("file", options.file, "model (.lode) or mesh (OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...)");
+  app.add_option("file", options.file,
+                 "model (.lode), tileset.json or mesh (OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...)");
   const auto* ratio_option =
       app.add_option("--ratio", ratio, "go to this share of the triangles")->check(CLI::Range(0.0, 1.0));
   app.add_option("--width", options.width_px, "window's width in pixels")->check(CLI::Range(200, 16384));

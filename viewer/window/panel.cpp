@@ -46,6 +46,17 @@ void level_controls(const PanelState& state) {
               state.cursor->morphing() ? ", morphing" : "");
 }
 
+void tile_controls(const PanelState& state) {
+  const PagerStatus status = state.tiles->status();
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::SliderFloat("##pixels", &state.control.max_error_px, 0.1F, 20.0F, "error at most %.2f pixels",
+                     ImGuiSliderFlags_Logarithmic);
+  ImGui::Text("%zu tiles, %u triangles", state.tiles->items().size(), state.tiles->triangle_count());
+  ImGui::Text("%u tiles loaded, %.0f MB, %u on their way", status.resident_tiles,
+              1e-6 * static_cast<double>(status.resident_bytes), status.wanted_tiles);
+  if (!status.failures.empty()) ImGui::TextWrapped("%s", status.failures.back().c_str());
+}
+
 void look_controls(const PanelState& state, PanelResult& result) {
   bool textures = state.look.coloring == Coloring::Materials;
   bool lod_colors = state.look.coloring == Coloring::Lod;
@@ -58,9 +69,11 @@ void look_controls(const PanelState& state, PanelResult& result) {
   if (ImGui::Checkbox("LOD colours", &lod_colors)) {
     state.look.coloring = lod_colors ? Coloring::Lod : Coloring::Materials;
   }
-  ImGui::SetNextItemWidth(-1.0F);
-  ImGui::SliderFloat("##morph", &state.morph_seconds, 0.0F, 3.0F, "morph in %.2f s");
-  result.restart_cursor = ImGui::IsItemDeactivatedAfterEdit();
+  if (state.cursor != nullptr) {
+    ImGui::SetNextItemWidth(-1.0F);
+    ImGui::SliderFloat("##morph", &state.morph_seconds, 0.0F, 3.0F, "morph in %.2f s");
+    result.restart_cursor = ImGui::IsItemDeactivatedAfterEdit();
+  }
   result.frame_model = ImGui::Button("Frame the model");
 }
 
@@ -107,6 +120,9 @@ PanelResult Panel::layout(const PanelState& state) {
   if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
   if (state.cursor != nullptr) {
     level_controls(state);
+  }
+  if (state.tiles != nullptr) tile_controls(state);
+  if (state.cursor != nullptr || state.tiles != nullptr) {
     ImGui::Separator();
     look_controls(state, result);
     frame_graph(state);

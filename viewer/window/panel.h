@@ -5,6 +5,7 @@
 #include <string>
 
 #include "../render/options.h"
+#include "../render/tile_scene.h"
 #include "level_control.h"
 
 struct GLFWwindow;
@@ -17,10 +18,11 @@ struct PanelState {
   Look& look;
   float& morph_seconds;
   const FrameTimes& frame_times;
-  const Cursor* cursor = nullptr;  ///< null while there is no model
-  std::string title;               ///< file shown
-  std::string message;             ///< what went wrong last, or a hint; may be empty
-  std::string loading;             ///< stage, empty when nothing loads
+  const Cursor* cursor = nullptr;    ///< null while there is no model
+  const TileScene* tiles = nullptr;  ///< null while there is no tileset
+  std::string title;                 ///< file shown
+  std::string message;               ///< what went wrong last, or a hint; may be empty
+  std::string loading;               ///< stage, empty when nothing loads
   float loading_fraction = 0.0F;
   double screen_error_px = 0.0;
   double uploaded_kb = 0.0;

@@ -5,7 +5,7 @@
 ///     auto pyramid = lodestone::TilePyramid::open("cliff_tiles/tileset.json");
 ///     lodestone::TilePager pager{*pyramid};
 ///     while (running) {
-///       for (lodestone::NodeId tile : pager.update(view, dt_s)) draw(tile, *pager.content(tile));
+///       for (lodestone::NodeId tile : pager.update(view, dt_s)) draw(*pager.content(tile), pager.share(tile));
 ///     }
 ///
 /// Selection is select_cut() of lod_graph.h, so a tile is replaced by its children when its error covers more than so
@@ -63,6 +63,8 @@ struct PagerOptions {
   double error_px = 1.0;
   /// Tiles are also asked for that the camera will need after so many seconds if it goes on as it does.
   double look_ahead_s = 0.5;
+  /// Tiles are exchanged by way of both, pixel by pixel, for so long; 0 = at once.
+  double fade_s = 0.2;
 };
 
 struct PagerStatus {
@@ -81,13 +83,23 @@ class TilePager {
   TilePager(const TilePager&) = delete;
   TilePager& operator=(const TilePager&) = delete;
 
-  /// What to draw now, every part of the view once. Takes in what workers have read, asks for what is missing, the
-  /// largest error first, lets go of what has not been drawn for longest. Does not wait. Empty only if the root cannot
-  /// be read.
+  /// What to draw now: every part of the view once, or twice with complementary share(). Takes in what workers have
+  /// read, asks for what is missing, the largest error first, lets go of what has not been drawn for longest. Does not
+  /// wait. Empty only if the root cannot be read. With `dt_s` 0 tiles are exchanged at once.
   [[nodiscard]] std::span<const NodeId> update(const View& view, double dt_s);
 
-  /// The same, but waits until all that this view needs is there (or has failed).
+  /// The same, but waits until all that this view needs is there (or has failed), and for no exchange.
   [[nodiscard]] std::span<const NodeId> settle(const View& view);
+
+  /// How much of a tile that update() has returned is shown: 1 = all of it. In (0, 1) it comes: pixels whose noise (any
+  /// fixed pattern in 0..1) is below the share show it. In (-1, 0) it leaves: the pixels whose noise is not below 1 +
+  /// share. So those that come and those that leave fill every pixel once.
+  [[nodiscard]] float share(NodeId tile) const;
+  /// True while an exchange is under way: draw on, even if the camera stands still.
+  [[nodiscard]] bool fading() const;
+
+  /// From the next update on.
+  void set_error_px(double error_px);
 
   /// Of a tile that update() has returned; valid until the next update().
   [[nodiscard]] const Mesh* content(NodeId tile) const;
@@ -100,6 +112,9 @@ class TilePager {
 
 /// True if the file looks like a tileset.json.
 [[nodiscard]] bool is_tileset_file(const std::filesystem::path& file);
+
+/// What to say where an .osgb file is given: it is OpenSceneGraph's own.
+[[nodiscard]] Error is_for_openscenegraph(const std::filesystem::path& file);
 
 /// Several tiles as one mesh, each with its own textures, for those who want a picture and no pager.
 [[nodiscard]] Mesh merged(std::span<const Mesh* const> tiles);

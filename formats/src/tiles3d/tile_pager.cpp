@@ -9,6 +9,8 @@
 #include <mutex>
 #include <thread>
 
+#include "tiles3d/cut_fade.h"
+
 namespace lodestone {
 namespace {
 
@@ -22,6 +24,11 @@ std::uint64_t bytes_of(const Mesh& mesh) {
     if (texture.encoded) bytes += texture.encoded->size();
   }
   return bytes;
+}
+
+// Of the plane through the eye: what else lies outside the view is left to the rasteriser.
+bool is_behind(const View& view, const Sphere& sphere) {
+  return glm::dot(sphere.center - view.eye, view.forward) < -sphere.radius_m;
 }
 
 enum class Stage : std::uint8_t { Absent, Wanted, Loading, Resident, Failed };
@@ -45,7 +52,8 @@ struct TilePager::State {
   std::vector<NodeId> parent;          // per node; none for a root
   std::vector<std::uint8_t> resident;  // per page, as select_cut() wants it
   CutScratch scratch;
-  std::vector<NodeId> drawn, ahead;
+  std::unique_ptr<CutFade> fade;
+  std::vector<NodeId> chosen, drawn, ahead;
   std::uint64_t frame = 0;
   glm::dvec3 last_eye{0.0};
   PagerStatus status;
@@ -62,7 +70,7 @@ struct TilePager::State {
   void take_in(NodeId tile, Result<Mesh> mesh);
   void collect();
   void select(const View& view, std::vector<NodeId>& out);
-  void ask(const View& view, const View& later);
+  void ask(const View& view, const View& later, double dt_s);
   void append_missing(std::vector<NodeId>& wanted);
   void let_go();
 };
@@ -121,10 +129,17 @@ void TilePager::State::append_missing(std::vector<NodeId>& wanted) {
   }
 }
 
-void TilePager::State::ask(const View& view, const View& later) {
+void TilePager::State::ask(const View& view, const View& later, double dt_s) {
   std::vector<NodeId> now;
-  select(view, drawn);
+  select(view, chosen);
   append_missing(now);
+  fade->step(scratch.refined(), dt_s, options.fade_s);
+  drawn = chosen;
+  if (fade->fading()) {
+    drawn.clear();
+    std::copy_if(fade->nodes().begin(), fade->nodes().end(), std::back_inserter(drawn),
+                 [&](NodeId tile) { return !is_behind(view, pyramid->graph().nodes[tile].bounds); });
+  }
   std::vector<NodeId> wanted;
   if (later.eye != view.eye) {
     select(later, ahead);
@@ -133,7 +148,7 @@ void TilePager::State::ask(const View& view, const View& later) {
   }
   wanted.insert(wanted.end(), now.begin(), now.end());
   for (const NodeId tile : now) tiles[tile].last_used = frame;  // siblings wait for each other, whatever the budget
-  for (const NodeId tile : drawn) {
+  for (const NodeId tile : fade->nodes()) {
     for (NodeId n = tile; n != none; n = parent[n]) tiles[n].last_used = frame;
   }
   const std::scoped_lock lock{mutex};
@@ -183,6 +198,7 @@ TilePager::TilePager(std::shared_ptr<const TilePyramid> pyramid, const PagerOpti
   s.stages.assign(graph.nodes.size(), Stage::Absent);
   s.parent.assign(graph.nodes.size(), none);
   s.scratch.reserve(graph);
+  s.fade = std::make_unique<CutFade>(graph);
   // A group's nodes are the children of the one node that it made.
   std::vector<NodeId> made_by(graph.groups.size(), none);
   for (const LodLink& link : graph.links) {
@@ -212,7 +228,7 @@ std::span<const NodeId> TilePager::update(const View& view, double dt_s) {
   View later = view;
   if (s.frame > 1 && dt_s > 0.0) later.eye += (view.eye - s.last_eye) * (s.options.look_ahead_s / dt_s);
   s.last_eye = view.eye;
-  s.ask(view, later);
+  s.ask(view, later, dt_s);
   s.let_go();
   if (s.pyramid->graph().empty() || s.resident[0] == 0) s.drawn.clear();
   return s.drawn;
@@ -229,6 +245,12 @@ std::span<const NodeId> TilePager::settle(const View& view) {
 }
 
 const Mesh* TilePager::content(NodeId tile) const { return state_->tiles[tile].mesh.get(); }
+
+float TilePager::share(NodeId tile) const { return state_->fade->share(tile); }
+
+void TilePager::set_error_px(double error_px) { state_->options.error_px = error_px; }
+
+bool TilePager::fading() const { return state_->fade->fading(); }
 
 PagerStatus TilePager::status() const { return state_->status; }
 

@@ -57,6 +57,12 @@ Result<Mesh> TilePyramid::load(NodeId tile, LoadTextures textures) const {
   return std::move(loaded->mesh);
 }
 
+Error is_for_openscenegraph(const std::filesystem::path& file) {
+  return {ErrorCode::Unsupported,
+          "tiles of OpenSceneGraph are shown by its own viewers (osgviewer); make 3D Tiles to look at them here",
+          file.string()};
+}
+
 Mesh merged(std::span<const Mesh* const> tiles) {
   Mesh out;
   const auto has = [&](auto member) {

@@ -5,6 +5,7 @@
 #include <lodestone/outcrop.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "mesh/vertex_copy.h"
@@ -26,6 +27,7 @@ class SkirtMaker {
 
   void make() {
     for_each_edge([&](FaceId f, VertexId a, VertexId b) { measure(f, a, b); });
+    find_rim();
     for_each_edge([&](FaceId f, VertexId a, VertexId b) { sew(f, a, b); });
   }
 
@@ -57,21 +59,39 @@ class SkirtMaker {
     }
   }
 
-  // Nothing where the skirt would stick out of the outcrop's own rim.
-  [[nodiscard]] glm::vec3 shift_of(VertexId v) const {
-    const glm::vec3& position = mesh_.vertices.positions[v];
+  [[nodiscard]] const OutcropPyramid::BorderPoint* border_point(const glm::vec3& position) const {
     const auto at =
         std::lower_bound(level_.border_points.begin(), level_.border_points.end(), position,
                          [](const auto& p, const glm::vec3& x) { return outcrop::is_before(p.position, x); });
-    const double normal_size = at != level_.border_points.end() ? double{glm::length(at->normal)} : 0.0;
-    if (!(normal_size > 0.0) || at->on_rim) return glm::vec3{0.0F};
+    return at != level_.border_points.end() && at->position == position ? &*at : nullptr;
+  }
+
+  void find_rim() {
+    for (std::uint32_t point = 0; point < ends_.size(); ++point) {
+      if (ends_[point].edges == 0) continue;
+      const auto* at = border_point(mesh_.vertices.positions[weld_.first_vertex[point]]);
+      if (at != nullptr && at->on_rim) rim_.push_back(at->position);
+    }
+  }
+
+  // Towards the rim of the outcrop itself a skirt becomes smaller, so that it does not stick out beyond.
+  [[nodiscard]] glm::vec3 shift_of(VertexId v) const {
+    const glm::vec3& position = mesh_.vertices.positions[v];
+    const auto* at = border_point(position);
+    const double normal_size = at != nullptr ? double{glm::length(at->normal)} : 0.0;
+    if (!(normal_size > 0.0)) return glm::vec3{0.0F};
+    constexpr double share_of_way = 0.5;
+    double most_m = std::numeric_limits<double>::infinity();
+    for (const glm::vec3& p : rim_) most_m = std::min(most_m, share_of_way * double{glm::distance(p, position)});
+    const double gap_m = std::min(info_.gap_m, most_m);
+    const double depth_m = std::min(info_.skirt_m, most_m);
     const glm::dvec3 normal = glm::dvec3{at->normal} / normal_size;
     const End& end = ends_[weld_.point_of[v]];
     // Along the mean plane: on a ridge the tile's own would lead out of the rock.
     const glm::dvec3 outwards = end.outwards - normal * glm::dot(normal, end.outwards);
     const double size = glm::length(outwards);
     const double miter = size > 0.0 ? std::min(2.0, end.edges / size) / size : 0.0;  // keeps its width around a corner
-    return glm::vec3{info_.gap_m * miter * outwards - info_.skirt_m * normal};
+    return glm::vec3{gap_m * miter * outwards - depth_m * normal};
   }
 
   VertexId outer(VertexId v) {
@@ -103,7 +123,8 @@ class SkirtMaker {
   const std::uint8_t* borders_;  // of the tile's first face
   FaceId faces_;
   Weld weld_;
-  std::vector<End> ends_;  // per point
+  std::vector<End> ends_;       // per point
+  std::vector<glm::vec3> rim_;  // ends of the border on the outcrop's own
   std::map<VertexId, VertexId> outer_;
   std::map<MaterialId, MaterialId> materials_;
 };

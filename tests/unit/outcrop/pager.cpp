@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include <lodestone/tile_loader.h>
@@ -85,6 +86,44 @@ TEST_CASE("While tiles are on their way, and whatever the budget, no part of the
   static_cast<void>(pager.settle(from_south(**pyramid, 3000.0)));
   static_cast<void>(pager.update(from_south(**pyramid, 3000.0), 0.0));
   CHECK(pager.status().resident_bytes <= 300'000);
+}
+
+TEST_CASE(
+    "An exchange of tiles goes by way of both: at every instant each part is shown once, or as two shares of one") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  const LodGraph& graph = (*pyramid)->graph();
+  std::vector<NodeId> parent(graph.nodes.size(), none);
+  for (const LodGroup& group : graph.groups) {
+    for (NodeId n = group.nodes.begin; n < group.nodes.end; ++n) {
+      for (const LodLink& link : graph.links) {
+        if (link.maker != none && &graph.groups[link.maker] == &group) parent[n] = link.nodes.begin;
+      }
+    }
+  }
+  TilePager pager{*pyramid, {.workers = 1, .budget_bytes = 300'000, .error_px = 0.5, .fade_s = 0.1}};
+  std::vector<float> come(graph.nodes.size(), 0.0F);
+  std::size_t exchanges = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    // Away and back, faster than exchanges end.
+    const auto drawn = pager.update(from_south(**pyramid, 8.0 + 7.0 * std::sin(0.05 * frame)), 0.016);
+    if (frame % 4 == 0) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    if (pager.fading()) ++exchanges;
+    std::fill(come.begin(), come.end(), 0.0F);
+    for (const NodeId n : drawn) come[n] = pager.share(n);
+    for (NodeId leaf = 0; leaf < graph.nodes.size(); ++leaf) {
+      if (std::find(parent.begin(), parent.end(), leaf) != parent.end()) continue;
+      std::vector<float> shares;
+      for (NodeId n = leaf; n != none; n = parent[n]) {
+        if (come[n] != 0.0F) shares.push_back(come[n]);
+      }
+      if (shares.size() == 1) CHECK(shares.front() == 1.0F);
+      if (shares.size() == 2) CHECK(shares.front() * shares.back() < 0.0F);
+      if (shares.size() == 2) CHECK(std::abs(shares.front() - shares.back()) == Approx(1.0F));
+      CHECK((shares.size() == 1 || shares.size() == 2));
+    }
+  }
+  CHECK(exchanges > 20);
 }
 
 TEST_CASE("What cannot be read is told, and what is coarser stands in") {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The window program, driven with mouse and keys on a virtual display, and its own screenshot.
 #include <lodestone/formats.h>
+#include <lodestone/generate.h>
+#include <lodestone/tileset_writer.h>
 
 #include <sys/wait.h>
 #include <catch2/catch.hpp>
@@ -95,6 +97,22 @@ TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys re
   CHECK(redness(fine) < -20.0);
   CHECK(redness(coarse) > 20.0);
   CHECK(redness(again) == Approx(redness(fine)).margin(5.0));
+}
+
+TEST_CASE("the window opens a tileset and loads the tiles that its camera needs") {
+  if (run("command -v xvfb-run > /dev/null") != 0) {
+    WARN("SKIPPED: xvfb-run is missing");
+    return;
+  }
+  const auto folder = test::scratch_folder("window_tiles");
+  auto cliff = generate_outcrop({.triangles = 12'000, .textures = 2, .texture_size_px = 128, .seed = 5});
+  REQUIRE(cliff);
+  REQUIRE(write_outcrop(*cliff, folder, {.pyramid = {.tile_bytes = 12'000}}));
+  const std::string program = std::string{"xvfb-run -a -s '-screen 0 1024x700x24' "} + LODESTONE_VIEW_PROGRAM + " " +
+                              (folder / "tileset.json").string() + " --width 1000 --height 600 --lod-colors";
+  REQUIRE(run(program + " --screenshot " + (folder / "near.png").string() + " 2> /dev/null") == 0);
+  // Most of the cliff is fine enough for its distance to be blue and green: the root alone would be red.
+  CHECK(redness(picture(folder / "near.png")) < 0.0);
 }
 
 TEST_CASE("the driver tells a viewer that dies from a display that does") {
