@@ -13,12 +13,14 @@ constexpr std::size_t most_part_faces = 256;  // larger ones lose facets first
 constexpr double held_m = 0.03;               // an outline nearer to the rest than this lies on it
 constexpr double held_share = 0.9;            // of the corners of a pane that closes an opening
 constexpr double long_edge_m = 0.25;          // over shorter ones the distance runs straight
+constexpr double look_ahead = 16.0;  // times the price: so far costs are found, so that not each price asks anew
 
 }  // namespace
 
 PartFinder::PartFinder(const FacetMesh& mesh)
     : mesh_(mesh), around_(mesh), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
   distance_m_.resize(mesh.point_count());
+  measured_.resize(mesh.point_count(), 0);
 }
 
 // Faces that hang together by points.
@@ -52,15 +54,15 @@ std::uint64_t PartFinder::state_of(const std::vector<FaceId>& faces) const {
 
 // A pane that closes an opening: its outline lies on the rest all around, and nothing is behind it. Without it one
 // would look through the wall.
-bool PartFinder::closes_opening(std::uint32_t id, double limit_m, const Part& part) const {
+bool PartFinder::closes_opening(double limit_m) const {
   const auto area = [&](FaceId f) { return glm::length(mesh_.area_vector(mesh_.faces[f])); };
   const FaceId largest =
-      *std::max_element(part.faces.begin(), part.faces.end(), [&](FaceId a, FaceId b) { return area(a) < area(b); });
+      *std::max_element(part_.faces.begin(), part_.faces.end(), [&](FaceId a, FaceId b) { return area(a) < area(b); });
   const glm::dvec3 across = mesh_.faces[largest].normal;
   const auto faces_across = [&](FaceId f) { return std::abs(glm::dot(mesh_.faces[f].normal, across)) >= 0.9; };
   std::uint32_t corners = 0;
   std::uint32_t held = 0;
-  for (const FaceId f : part.faces) {
+  for (const FaceId f : part_.faces) {
     if (!faces_across(f)) continue;
     for (const std::uint32_t p : mesh_.faces[f].point) {
       ++corners;
@@ -70,86 +72,125 @@ bool PartFinder::closes_opening(std::uint32_t id, double limit_m, const Part& pa
   if (held < held_share * corners) return false;
   double open = 0.0;
   double whole = 0.0;
-  for (const FaceId f : part.faces) {
+  for (const FaceId f : part_.faces) {
     if (!faces_across(f)) continue;
     const auto& p = mesh_.faces[f].point;
     whole += area(f);
-    if (!around_.lies_behind((mesh_.at(p[0]) + mesh_.at(p[1]) + mesh_.at(p[2])) / 3.0, across, id, limit_m))
+    if (!around_.lies_behind((mesh_.at(p[0]) + mesh_.at(p[1]) + mesh_.at(p[2])) / 3.0, across, id_, limit_m))
       open += area(f);
   }
   return 2.0 * open > whole;
 }
 
-bool PartFinder::add_sample(const glm::dvec3& p, std::uint32_t id, double limit_m, Part& part, double& distance) {
-  const Surroundings::Nearest found = around_.nearest(p, id, limit_m);
-  distance = found.distance_m;
-  if (found.face == none) return false;
-  part.error_m = std::max(part.error_m, distance);
+// Nothing within the limit: infinity.
+double PartFinder::sample(const glm::dvec3& p, double limit_m) {
+  const Surroundings::Nearest found = around_.nearest(p, id_, limit_m, last_nearest_);
+  if (found.face == none) return found.distance_m;
+  last_nearest_ = found.face;
+  part_.error_m = std::max(part_.error_m, found.distance_m);
   const auto& support = mesh_.faces[found.face].point;
-  if (part.support.size() < 3 || !std::equal(support.begin(), support.end(), part.support.end() - 3))
-    part.support.insert(part.support.end(), support.begin(), support.end());
-  return true;
+  if (part_.support.size() < 3 || !std::equal(support.begin(), support.end(), part_.support.end() - 3))
+    part_.support.insert(part_.support.end(), support.begin(), support.end());
+  return found.distance_m;
 }
 
-// Looks from corners, and from the middles of edges and of the face where it is large.
-bool PartFinder::measure_face(const Face& face, std::uint32_t id, double limit_m, Part& part, double& cost) {
-  std::array<double, 7> d{};
-  std::array<glm::dvec3, 3> at{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t p = face.point[k];
-    at[k] = mesh_.at(p);
-    if (measured_[p] != id + 1) {
-      // No farther than its neighbour and the way there.
-      double bound = limit_m;
-      if (k > 0) bound = std::min(bound, d[k - 1] + glm::length(at[k] - at[k - 1]) + 1e-6);
-      if (!add_sample(at[k], id, bound, part, distance_m_[p])) return false;
-      measured_[p] = id + 1;
-    }
-    d[k] = distance_m_[p];
+double PartFinder::at_corner(std::uint32_t p, double limit_m) {
+  if (measured_[p] != measurement_) {
+    const double d = sample(mesh_.at(p), limit_m);
+    if (std::isinf(d)) return d;
+    distance_m_[p] = d;
+    measured_[p] = measurement_;
   }
+  return distance_m_[p];
+}
+
+double PartFinder::at_middle(std::uint32_t p, std::uint32_t q, double limit_m) {
+  if (q < p) std::swap(p, q);
+  Middle& known = middles_[(p * 31ULL + q) % middles_.size()];
+  if (known.measurement != measurement_ || known.low != p || known.high != q) {
+    const double d = sample(0.5 * (mesh_.at(p) + mesh_.at(q)), limit_m);
+    if (std::isinf(d)) return d;
+    known = {p, q, measurement_, d};
+  }
+  return known.distance_m;
+}
+
+// What the face costs, infinite if that is more than `most`; from its corners alone it is what it costs at least. Looks
+// from the middles of its edges too where one of them is long.
+double PartFinder::cost_of(const Face& face, Look look, double limit_m, double most) {
   const double area_m2 = 0.5 * glm::length(mesh_.area_vector(face));
-  const double longest = std::max({glm::length(at[1] - at[0]), glm::length(at[2] - at[1]), glm::length(at[0] - at[2])});
-  if (longest < long_edge_m) {
-    cost = area_m2 * mean_square(d[0], d[1], d[2]);
-    return true;
+  limit_m = std::min(limit_m, std::sqrt(6.0 * most / area_m2));
+  const auto& p = face.point;
+  std::array<double, 3> d{};
+  double longest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    d[k] = at_corner(p[k], limit_m);
+    if (std::isinf(d[k])) return d[k];
+    longest = std::max(longest, glm::length(mesh_.at(p[k]) - mesh_.at(p[k == 2 ? 0 : k + 1])));
   }
-  const std::array<glm::dvec3, 4> middles{0.5 * (at[0] + at[1]), 0.5 * (at[1] + at[2]), 0.5 * (at[2] + at[0]),
-                                          (at[0] + at[1] + at[2]) / 3.0};
+  if (longest < long_edge_m) return area_m2 * mean_square(d[0], d[1], d[2]);
   double sum = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  for (std::size_t i = 0; i < middles.size(); ++i) {
-    if (!add_sample(middles[i], id, limit_m, part, d[3 + i])) return false;
-    sum += d[3 + i] * d[3 + i];
+  for (std::size_t k = 0; k < 3 && look == Look::Everywhere; ++k) {
+    const double middle = at_middle(p[k], p[k == 2 ? 0 : k + 1], limit_m);
+    sum += middle * middle;
   }
-  cost = area_m2 * sum / static_cast<double>(d.size());
-  return true;
+  return area_m2 * sum / 6.0;
 }
 
 // False as soon as the part is known to be too dear.
-bool PartFinder::measure(std::uint32_t id, double limit_m, double price, Part& part, Known& known) {
-  const double affordable = price * static_cast<double>(part.faces.size());
-  double most = -1.0;
-  const FaceId first = known.dearest;
+bool PartFinder::measure(double limit_m, double price, Known& known) {
+  ++measurement_;
+  last_nearest_ = none;
+  const auto count = static_cast<double>(part_.faces.size());
+  const auto area = [&](FaceId f) { return glm::length(mesh_.area_vector(mesh_.faces[f])); };
+  if (known.dearest == none) {
+    known.dearest = *std::max_element(part_.faces.begin(), part_.faces.end(),
+                                      [&](FaceId a, FaceId b) { return area(a) < area(b); });
+  }
+  // It is not looked at again before the price is what the dearest face alone costs.
+  const double ahead = look_ahead * price * count;
+  const double ahead_m = std::sqrt(look_ahead) * limit_m;
+  const double dearest = cost_of(mesh_.faces[known.dearest], Look::Everywhere, ahead_m, ahead);
+  known.key = std::min(dearest, ahead) / count;
+  if (known.key > price) return false;
   known.key = std::nextafter(price, 2.0 * price);
-  const auto add = [&](FaceId f) {
-    double cost = 0.0;
-    if (!measure_face(mesh_.faces[f], id, limit_m, part, cost)) {
-      known.dearest = f;
+  double most = -1.0;
+  for (const Look look : {Look::FromCorners, Look::Everywhere}) {
+    part_.cost = 0.0;
+    for (const FaceId f : part_.faces) {
+      const double cost = cost_of(mesh_.faces[f], look, ahead_m, ahead - part_.cost);
+      part_.cost += cost;
+      if (cost > most) {
+        most = cost;
+        known.dearest = f;
+      }
+      if (part_.cost > ahead) return false;
+    }
+    if (part_.cost > 4.0 * price * count) {
+      known.key = part_.cost / count;
       return false;
     }
-    part.cost += cost;
-    if (cost > most) {
-      most = cost;
-      known.dearest = f;
-    }
-    return part.cost <= affordable;
-  };
-  const bool again = first != none && part_of_[first] == id;
-  bool within = !again || add(first);
-  for (std::size_t i = 0; i < part.faces.size() && within; ++i) {
-    within = (again && part.faces[i] == first) || add(part.faces[i]);
   }
-  known.key = std::max(known.key, part.cost / static_cast<double>(part.faces.size()));
-  return within;
+  known.key = part_.cost / count;
+  std::sort(part_.support.begin(), part_.support.end());
+  part_.support.erase(std::unique(part_.support.begin(), part_.support.end()), part_.support.end());
+  for (const FaceId f : part_.faces) {
+    for (const std::uint32_t p : mesh_.faces[f].point) {
+      part_.deviation_m = std::max(part_.deviation_m, double{mesh_.deviation_m[p]});
+    }
+  }
+  known.measured = true;
+  known.support_state = support_state(part_);
+  known.part = part_;
+  known.part.faces.clear();
+  return known.key <= price;
+}
+
+// Of what it lies upon.
+std::uint64_t PartFinder::support_state(const Part& part) const {
+  std::uint64_t sum = 0;
+  for (const std::uint32_t p : part.support) sum += mesh_.version[p];
+  return sum;
 }
 
 std::vector<Part> PartFinder::find(double limit_m, double price) {
@@ -158,7 +199,6 @@ std::vector<Part> PartFinder::find(double limit_m, double price) {
   if (parts_.size() < 2) return found;
   std::size_t most = 0;
   for (const auto& faces : parts_) most = std::max(most, faces.size());
-  measured_.assign(mesh_.point_count(), 0);
   bool ready = false;
   for (std::uint32_t id = 0; id < parts_.size(); ++id) {
     const std::vector<FaceId>& faces = parts_[id];
@@ -169,17 +209,18 @@ std::vector<Part> PartFinder::find(double limit_m, double price) {
     if (known.state != state) known = {.state = state};
     if (!ready) around_.update(part_of_);
     ready = true;
-    Part part;
-    part.faces = faces;
-    if (!measure(id, limit_m, price, part, known)) continue;
-    known.key = 0.0;
-    if (closes_opening(id, limit_m, part)) continue;
-    double deviation = 0.0;
-    for (const FaceId f : part.faces) {
-      for (const std::uint32_t q : mesh_.faces[f].point) deviation = std::max(deviation, double{mesh_.deviation_m[q]});
+    id_ = id;
+    if (known.measured && known.support_state == support_state(known.part)) {
+      part_ = known.part;
+      part_.faces = faces;
+    } else {
+      part_ = {};
+      part_.faces = faces;
+      if (!measure(limit_m, price, known)) continue;
     }
-    part.error_m = std::hypot(part.error_m, deviation);
-    found.push_back(std::move(part));
+    if (part_.error_m > limit_m || closes_opening(limit_m)) continue;
+    part_.error_m = std::hypot(part_.error_m, part_.deviation_m);
+    found.push_back(std::move(part_));
   }
   std::stable_sort(found.begin(), found.end(), [](const Part& a, const Part& b) {
     return a.cost * static_cast<double>(b.faces.size()) < b.cost * static_cast<double>(a.faces.size());

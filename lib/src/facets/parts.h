@@ -13,6 +13,7 @@ struct Part {
   std::vector<FaceId> faces;
   std::vector<std::uint32_t> support;  // points of the faces that it lies upon
   double error_m = 0.0;                // farthest point of it from the rest
+  double deviation_m = 0.0;            // of its points before
   double cost = 0.0;                   // integral of squared distance
 };
 
@@ -31,21 +32,39 @@ class PartFinder {
     std::uint64_t state = 0;  // of its faces when it was measured
     double key = 0.0;         // it costs at least so much a face
     FaceId dearest = none;    // the face that costs most
+    bool measured = false;    // then `part` holds all but the faces, as long as what it lies upon is as it was
+    std::uint64_t support_state = 0;
+    Part part;
   };
   void split();
   [[nodiscard]] std::uint64_t state_of(const std::vector<FaceId>& faces) const;
-  [[nodiscard]] bool measure(std::uint32_t id, double limit_m, double price, Part& part, Known& known);
-  [[nodiscard]] bool measure_face(const Face& face, std::uint32_t id, double limit_m, Part& part, double& cost);
-  [[nodiscard]] bool add_sample(const glm::dvec3& p, std::uint32_t id, double limit_m, Part& part, double& distance);
-  [[nodiscard]] bool closes_opening(std::uint32_t id, double limit_m, const Part& part) const;
+  enum class Look : std::uint8_t { FromCorners, Everywhere };
+  [[nodiscard]] bool measure(double limit_m, double price, Known& known);
+  [[nodiscard]] double cost_of(const Face& face, Look look, double limit_m, double most);
+  [[nodiscard]] double at_corner(std::uint32_t p, double limit_m);
+  [[nodiscard]] double at_middle(std::uint32_t p, std::uint32_t q, double limit_m);
+  [[nodiscard]] double sample(const glm::dvec3& p, double limit_m);
+  [[nodiscard]] std::uint64_t support_state(const Part& part) const;
+  [[nodiscard]] bool closes_opening(double limit_m) const;
 
   const FacetMesh& mesh_;
   Surroundings around_;
   std::vector<std::uint32_t> part_of_;      // per face
   std::vector<std::vector<FaceId>> parts_;  // faces, ascending
   std::vector<Known> known_;                // per face: of the part whose first face it is
-  std::vector<double> distance_m_;          // per point, of the part measured now
-  std::vector<std::uint32_t> measured_;     // per point: the part for which distance_m_ holds, plus one
+
+  // Of the part that is measured:
+  struct Middle {
+    std::uint32_t low = none, high = none, measurement = 0;
+    double distance_m = 0.0;
+  };
+  std::uint32_t id_ = none;
+  Part part_;
+  std::uint32_t measurement_ = 0;
+  std::vector<double> distance_m_;       // per point
+  std::vector<std::uint32_t> measured_;  // per point: the measurement for which distance_m_ holds
+  std::array<Middle, 1024> middles_;     // of edges, by their hash; the last one stays
+  FaceId last_nearest_ = none;           // to the sample before
 };
 
 }  // namespace lodestone::facets

@@ -7,7 +7,7 @@
 namespace lodestone::facets {
 namespace {
 
-constexpr std::size_t most_young = 8;  // the old tree stands until one face in so many has changed
+constexpr std::size_t most_young = 4;  // the old tree stands until one face in so many has changed
 
 }  // namespace
 
@@ -48,8 +48,14 @@ void Surroundings::update(const std::vector<std::uint32_t>& part_of) {
   }
 }
 
-Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t part, double limit_m) const {
+Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t part, double limit_m,
+                                            FaceId hint) const {
   Nearest best{limit_m, none};
+  if (hint != none) {
+    const auto& q = mesh_.faces[hint].point;
+    const double d = std::sqrt(squared_distance_to_triangle(p, mesh_.at(q[0]), mesh_.at(q[1]), mesh_.at(q[2])));
+    if (d < limit_m) best = {d, hint};
+  }
   for (const Grove* grove : {&old_, &young_}) {
     const auto other = [&](FaceId i) { return grove->part[i] != part && grove->part[i] != none; };
     const TriangleBvh::Nearest found = grove->tree.nearest_of(p, best.distance_m, other);

@@ -20,8 +20,8 @@ class Surroundings {
     double distance_m = std::numeric_limits<double>::infinity();
     FaceId face = none;
   };
-  // Among the faces of other parts nearer than the limit.
-  [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t part, double limit_m) const;
+  // Among the faces of other parts nearer than the limit. `hint`: one of these that is likely near, or none.
+  [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t part, double limit_m, FaceId hint) const;
 
   // Whether a face of another part, before or behind, covers p when one looks along `across`.
   [[nodiscard]] bool lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part,
