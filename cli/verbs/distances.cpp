@@ -66,6 +66,7 @@ Result<render::StudyOptions> Distances::options() const {
   if (viewing_distance_m_) options.display.viewing_distance_m = *viewing_distance_m_;
   options.samples = samples_;
   options.supersample = supersample_;
+  if (!folder_.empty()) options.needed_levels = 16;  // for plan.json
   if (sampling_ == "adaptive") options.sampling = Sampling::Adaptive;
   options.sides.clear();
   std::istringstream words{sides_};
@@ -160,6 +161,27 @@ void put(Report& report, const SwitchStudy& study) {
   vision.set("noticeable_ratio", study.vision.noticeable_ratio);
   report.set("vision", vision);
   put_sides(report, study);
+  for (const render::NeededCheck& needed : study.needed) {
+    Report object;
+    object.set("distance_m", needed.check.distance_m);
+    object.set("level", needed.level);
+    object.set("triangles", needed.triangles);
+    object.set("noticeable_ratio", needed.check.noticeable_ratio);
+    report.add("needed", object);
+  }
+}
+
+void put(Report& report, const Display& display) {
+  Report screen;
+  screen.set("width_px", display.width_px);
+  screen.set("height_px", display.height_px);
+  screen.set("dots_per_inch", display.dots_per_inch);
+  screen.set("viewing_distance_m", display.viewing_distance_m);
+  screen.set("fov_deg", glm::degrees(display.fov_y_rad));
+  screen.set("luminance_cd_m2", display.luminance_cd_m2);
+  screen.set("focal_px", focal_length_px(display));
+  screen.set("max_frequency_cpd", max_frequency_cpd(display));
+  report.set("display", screen);
 }
 
 std::string row(const std::string& name, const std::vector<std::string>& cells) {
@@ -195,9 +217,17 @@ std::string check_row(const std::string& name, const render::PlanCheck& check) {
   return row(name, cells);
 }
 
-// Tables 3 to 5 of the paper in one, then what an eye would notice at each switch.
+std::string fit_line(const DetailFit& fit) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "\nseen: %.4g exp(%.4g x) + %.4g exp(%.4g x) at x m beyond the first distance; R^2 %.4f, RMSE %.2g\n",
+                fit.a, fit.b, fit.c, fit.d, fit.r_square, fit.rmse);
+  return text;
+}
+
+// The fit, Tables 3 to 5 of the paper in one, then what an eye would notice at each switch.
 std::string table(const SwitchStudy& study) {
-  std::string lines = "\n" + row("plan", {"redundancy", "cost", "distance in m : triangles"});
+  std::string lines = fit_line(study.fit) + "\n" + row("plan", {"redundancy", "cost", "distance in m : triangles"});
   lines += plan_row(study.design, study.first_m);
   for (const SwitchPlan& plan : study.alternatives) lines += plan_row(plan, study.first_m);
   if (study.plan.switch_m != study.design.switch_m) lines += plan_row(study.plan, study.first_m);
@@ -230,6 +260,9 @@ Status Distances::write(const SwitchStudy& study, const ProgressiveModel& model)
                  .focal_px = study.focal_px,
                  .height_px = double(screen_.height_px),
                  .width_px = double(screen_.width_px)};
+  for (const render::NeededCheck& needed : study.needed) {
+    file.needed.push_back({needed.check.distance_m, needed.level});
+  }
   for (std::size_t i = 0; i < plan.levels.size(); ++i) {
     if (plan.levels[i] == file.levels.back().level) continue;  // nothing to switch to
     file.levels.push_back(
@@ -247,9 +280,14 @@ Status Distances::run(Session& session) {
   if (!model) return model.error();
   auto study = render::study_switch_distances(*model, *options, session.context());
   session.keep(study);
-  if (!study) return study.error();
+  if (!study) {
+    Error error = study.error();
+    error.where = model_.string();
+    return error;
+  }
   session.remark(supersample_ == 1 ? "supersampling: off" : "supersampling: " + std::to_string(supersample_));
   session.report().set("supersample", supersample_);
+  put(session.report(), options->display);
   put(session.report(), *study);
   session.report().show(table(*study));
   return folder_.empty() ? Status{Done{}} : write(*study, **model);

@@ -36,6 +36,7 @@ class Sweep final : public Verb {
   double morph_s_ = render::SweepOptions{}.morph_seconds;
   bool and_back_ = false;
   std::optional<double> perceptual_m_;
+  std::filesystem::path plan_;
   CameraOptions camera_{{960, 540}};
 };
 
@@ -46,6 +47,8 @@ void Sweep::declare(Arguments& arguments) {
   arguments.number("--to", to_, 0.0, 1.0, "Share of the triangles at the end");
   arguments.length_m("--perceptual", perceptual_m_,
                      "Instead of shares: the levels that an eye needs from near to so far away");
+  arguments.file("--plan", plan_, "With --perceptual: the levels that a plan made by 'distances' has measured",
+                 Need::Optional);
   arguments.flag("--and-back", and_back_, "Half of the frames there, half back");
   arguments.choice("--style", style_, {"morph", "hard", "discrete", "fade"}, "How levels follow each other");
   arguments.count("--levels", levels_, 2, 100, "Fixed levels of discrete and fade");
@@ -66,6 +69,11 @@ Result<render::SweepOptions> Sweep::options() const {
                                .style = *style,
                                .discrete_levels = levels_,
                                .morph_seconds = morph_s_};
+  if (!plan_.empty()) {
+    auto plan = read_level_plan(plan_);
+    if (!plan) return plan.error();
+    options.plan = std::move(*plan);
+  }
   camera_.apply(options.render);
   return options;
 }

@@ -15,13 +15,16 @@ class View final : public Verb {
   [[nodiscard]] std::string example() const override { return "lodestone view house.lode"; }
   void declare(Arguments& arguments) override {
     arguments.file("FILE", file_, "Mesh or .lode file", Need::Required);
-    arguments.flag("--perceptual", perceptual_, "Level by the camera's distance: what an eye cannot tell apart");
+    arguments.flag("--perceptual", perceptual_, "Level by the camera's distance: at most half a pixel off");
+    arguments.file("--plan", plan_, "Level by the camera's distance: what 'distances' measured to be seen",
+                   Need::Optional);
   }
   [[nodiscard]] Status run(Session& session) override;
 
  private:
   std::filesystem::path file_;
   bool perceptual_ = false;
+  std::filesystem::path plan_;
 };
 
 // lodestone-view beside this program, as installed; else in the build tree; else on the PATH.
@@ -35,6 +38,7 @@ Status View::run(Session& session) {
   const std::string program = find_viewer().string();
   std::vector<std::string> command{program, file_.string()};
   if (perceptual_) command.emplace_back("--perceptual");
+  if (!plan_.empty()) command.insert(command.end(), {"--plan", plan_.string()});
   const auto ended = run_to_end(std::move(command));
   if (!ended) {
     return Error{ErrorCode::NotFound, "cannot be started, install lodestone-view beside lodestone", program};

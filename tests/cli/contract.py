@@ -5,6 +5,7 @@
     LODESTONE=path/to/lodestone contract.py [Class.test]
 """
 import json
+import math
 import os
 import pty
 import re
@@ -302,7 +303,7 @@ class Keys(Contract):
     def test_distances(self):
         folder = self.scratch / "plan"
         words = ("distances", self.model, "--levels", 3, "--samples", 12, "--screen", "320x256", "--sides", "front,left")
-        found = self.keys("fit switch_m redundancy cost alternatives", *words, "-o", folder)
+        found = self.keys("fit switch_m redundancy cost alternatives", *words, "-o", folder, "--threads", 1)
         self.assertLessEqual({"a", "b", "c", "d", "r_square", "rmse"}, set(found["fit"]))
         self.assertEqual(len(found["switch_m"]), 3)
         self.assertEqual(found["switch_m"], sorted(found["switch_m"]))
@@ -311,12 +312,15 @@ class Keys(Contract):
         for plan in found["alternatives"]:
             self.assertGreaterEqual(plan["redundancy"], found["design"]["redundancy"])
         self.assertLessEqual(max(found["measured"]["noticeable_ratio"]), 0.01)
+        self.assertEqual(found["display"]["luminance_cd_m2"], 200)
+        self.assertAlmostEqual(found["display"]["max_frequency_cpd"], 14.82, 2)
+        self.assertEqual([need["distance_m"] for need in found["needed"]][0], found["first_m"])
         for name in ("metric", "redundancy", "triangles", "rendered", "seen", "difference"):
             self.assertEqual((folder / f"{name}.png").read_bytes()[:4], b"\x89PNG", name)
-        for threads in (1, 8):
-            again = self.json(*words, "--threads", threads)
-            for key in set(found) - COMMON:
-                self.assertEqual(again[key], found[key], key)
+        again = self.json(*words, "--threads", 8)
+        self.assertNotIn("needed", again)  # only for plan.json
+        for key in set(found) - COMMON - {"needed"}:
+            self.assertEqual(again[key], found[key], key)
         people = run(*words)
         self.assertIn("minimum redundancy", people.stdout)
         self.assertIn("supersampling: off", people.stderr)
@@ -331,19 +335,43 @@ class Keys(Contract):
         for i, level in enumerate(levels):
             self.assertEqual(self.json("inspect", self.scratch / "out" / f"level_{i}.glb")["triangles"],
                              level["triangles"])
-        tile = json.loads((self.scratch / "out" / "tileset.json").read_text())["root"]
-        uris, errors = [], []
-        while tile:
-            uris.append(tile["content"]["uri"])
-            errors.append(tile["geometricError"])
-            tile = tile.get("children", [None])[0]
-        self.assertEqual(uris, [f"level_{i}.glb" for i in reversed(range(len(levels)))])
-        self.assertEqual(errors, sorted(errors, reverse=True))
-        self.assertEqual(errors[-1], 0)
+        starts = [level["from_m"] for level in plan["levels"]]
+        # A client of 3D Tiles refines a tile whose error covers more than 16 pixels at the surface of its sphere.
+        tileset = json.loads((self.scratch / "out" / "tileset.json").read_text())
+        refined_m = lambda error: error * plan["focal_px"] / 16 + plan["radius_m"]
+        self.assertAlmostEqual(refined_m(tileset["geometricError"]) / plan["last_m"], 1)
+        tile = tileset["root"]
+        for i in reversed(range(len(levels))):
+            self.assertEqual(tile["content"]["uri"], f"level_{i}.glb")
+            self.assertEqual(tile["boundingVolume"]["sphere"][3], plan["radius_m"])
+            if i > 0:
+                self.assertAlmostEqual(refined_m(tile["geometricError"]) / starts[i], 1)
+                tile = tile["children"][0]
+        self.assertEqual(tile["geometricError"], 0)
+        self.assertNotIn("children", tile)
+        # MSFT_lod: a level is left for the next where the sphere covers less of the screen than its coverage says.
+        glb = (self.scratch / "out" / "levels.glb").read_bytes()
+        gltf = json.loads(glb[20:20 + int.from_bytes(glb[12:16], "little")])
+        self.assertIn("MSFT_lod", gltf["extensionsUsed"])
+        node = next(node for node in gltf["nodes"] if "MSFT_lod" in node.get("extensions", {}))
+        self.assertEqual(len(node["extensions"]["MSFT_lod"]["ids"]), len(levels) - 1)
+        covered = node["extras"]["MSFT_screencoverage"]
+        self.assertEqual(len(covered), len(levels))
+        for share, end_m in zip(covered, starts[1:] + [plan["last_m"]]):
+            radius_px = plan["radius_m"] * plan["focal_px"] / end_m
+            self.assertAlmostEqual(share, math.pi * radius_px ** 2 / (plan["width_px"] * plan["height_px"]))
+        ids = [gltf["nodes"].index(node)] + node["extensions"]["MSFT_lod"]["ids"]
+        for level, i in zip(levels, ids):
+            parts = gltf["meshes"][gltf["nodes"][i]["mesh"]]["primitives"]
+            self.assertEqual(sum(gltf["accessors"][part["indices"]]["count"] for part in parts), 3 * level["triangles"])
+        # A sweep that follows the plan.
+        small = ("--frames", 4, "--size", "64x48", "--style", "hard")
+        self.json("sweep", self.model, *small, "--perceptual", 4000, "--plan", folder / "plan.json")
+        self.assertIn("how far away", self.fails(1, "sweep", self.model, *small, "--plan", folder / "plan.json"))
         other = self.scratch / "other.lode"
         self.json("build", self.house, "--placement", "midpoint", "--target-triangles", 2000, "-o", other)
-        self.assertIn("another model", self.fails(1, "extract", other, "--plan", folder / "plan.json", "-o",
-                                                  self.scratch / "no"))
+        for words in (("extract", other, "-o", self.scratch / "no"), ("sweep", other, *small, "--perceptual", 4000)):
+            self.assertIn("another model", self.fails(1, *words, "--plan", folder / "plan.json"))
         (self.scratch / "bad.json").write_text('{"format": 3}')
         self.assertIn("bad.json", self.fails(2, "extract", self.model, "--plan", self.scratch / "bad.json", "-o",
                                              self.scratch / "no"))

@@ -62,6 +62,8 @@ struct DetailStage::State {
         surfaces(stage->gl(), plain(model->data())),
         cursor(model, {.motion = Motion::Hard, .start_level = model->record_count()}),
         geometry(stage->gl(), plain(cursor)) {
+    const DrawArrays finest = arrays_of(cursor);
+    positions.assign(finest.positions.begin(), finest.positions.end());
     cursor.clear_dirty();
   }
 
@@ -78,21 +80,20 @@ struct DetailStage::State {
   Surfaces surfaces;
   Cursor cursor;
   Geometry geometry;
+  std::vector<glm::vec3> positions;  // of the finest level: what a picture must hold
 };
 
 View DetailStage::State::view(double azimuth_rad, double distance_m) const {
   constexpr double band_reach = 16.0;  // samples of the coarsest band: 8 of the filter, 4 of the wavelet, some to spare
   const std::uint32_t step_px = 1U << std::max(6, wavelet_levels);
-  const Box& box = model->bounds();
-  const glm::dvec3 middle = box.center();
+  const glm::dvec3 middle = model->bounds().center();
   const glm::dvec3 outward{std::sin(azimuth_rad), std::cos(azimuth_rad), 0.0};
   const glm::dvec3 right{-outward.y, outward.x, 0.0};
   glm::dvec2 reach{0.0};  // pixels per pixel of focal length
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p{(corner & 1U) != 0 ? box.max.x : box.min.x, (corner & 2U) != 0 ? box.max.y : box.min.y,
-                       (corner & 4U) != 0 ? box.max.z : box.min.z};
-    const double depth_m = std::max(0.0, distance_m - glm::dot(p - middle, outward));
-    reach = glm::max(reach, glm::abs(glm::dvec2{glm::dot(p - middle, right), p.z - middle.z}) / depth_m);
+  for (const glm::vec3& position : positions) {
+    const glm::dvec3 p = glm::dvec3{position} - middle;
+    const double depth_m = std::max(0.0, distance_m - glm::dot(p, outward));
+    reach = glm::max(reach, glm::abs(glm::dvec2{glm::dot(p, right), p.z}) / depth_m);
   }
   const double focal_px = focal_length_px(display);
   const double margin_px = std::ldexp(band_reach, wavelet_levels);

@@ -15,6 +15,7 @@
 
 #include <lodestone/context.h>
 #include <lodestone/cursor.h>
+#include <lodestone/discrete_levels.h>
 #include <lodestone/image.h>
 #include <lodestone/mesh.h>
 #include <lodestone/progressive_model.h>
@@ -86,6 +87,8 @@ struct SweepOptions {
   /// pictures) from where the model just fills them to so many metres away, in equal factors of distance; the two
   /// ratios do not count.
   std::optional<double> perceptual_m;
+  /// With `perceptual_m`: the levels that this plan has measured to be needed, instead of equation 17's.
+  std::optional<LevelPlan> plan;
   SweepStyle style = SweepStyle::Morph;
   std::uint32_t discrete_levels = 5;  ///< Discrete, Fade: from `from_ratio` to `to_ratio` in equal factors
   double morph_seconds = 2.0;         ///< Morph: time that a record takes

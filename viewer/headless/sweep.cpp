@@ -18,7 +18,11 @@ constexpr double frame_step_s = 1.0 / 60.0;
 class Schedule {
  public:
   Schedule(const SweepOptions& options, const ProgressiveModel& model, const View& view)
-      : frames_(options.frames), and_back_(options.and_back), model_(model), perceptual_(options.perceptual_m) {
+      : frames_(options.frames),
+        and_back_(options.and_back),
+        model_(model),
+        perceptual_(options.perceptual_m),
+        plan_(options.plan) {
     if (perceptual_) {
       focal_px_ = focal_px(view);
       from_ = std::log(first_of(model, view));
@@ -43,6 +47,7 @@ class Schedule {
   }
   [[nodiscard]] Level level_at(double position) const {
     const double wanted = std::exp(from_ + (to_ - from_) * position);
+    if (plan_) return needed_level(*plan_, wanted * plan_->focal_px / focal_px_);
     if (perceptual_) return model_.level_of_error(imperceptible_error_m(wanted, focal_px_));
     return model_.level_of_triangles(static_cast<std::uint32_t>(std::lround(wanted)));
   }
@@ -52,6 +57,7 @@ class Schedule {
   bool and_back_;
   const ProgressiveModel& model_;
   bool perceptual_;
+  const std::optional<LevelPlan>& plan_;
   double focal_px_ = 0.0;
   double from_ = 0.0;  // logarithms of triangles, or of metres
   double to_ = 0.0;
@@ -221,7 +227,9 @@ Status check(const SweepOptions& options, const ProgressiveModel& model) {
     return refuse("morphing and fading take from 0 to 10 seconds");
   }
   if (model.face_slot_count() == 0) return refuse("the model has no triangles to show");
-  return Done{};
+  if (!options.plan) return Done{};
+  if (!options.perceptual_m) return refuse("a plan is swept by distance: say how far away the sweep ends");
+  return check_level_plan(*options.plan, model);
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
 #include "detail_stage.h"
+#include "level_checker.h"
 
 namespace lodestone::render {
 namespace {
@@ -52,6 +52,7 @@ Status check(const StudyOptions& options) {
     return refuse("dots per inch and viewing distance must be above 0");
   }
   if (options.levels > 16) return refuse("a plan has at most 16 levels");
+  if (options.needed_levels > 1000) return refuse("at most 1000 distances can be looked at for needed levels");
   if (options.samples < 4) return refuse("a fit needs at least 4 samples");
   if (!(options.reach_ratio > 1.0)) return refuse("samples must reach beyond the first distance");
   return Done{};
@@ -62,7 +63,12 @@ class Studying {
  public:
   Studying(std::shared_ptr<const ProgressiveModel> model, const StudyOptions& options, const Context& context,
            DetailStage& stage)
-      : model_(std::move(model)), options_(options), context_(context), stage_(stage), vision_(options.display) {}
+      : model_(std::move(model)),
+        options_(options),
+        context_(context),
+        stage_(stage),
+        checker_(model_, options.display, options.noticeable_limit, stage, context),
+        vision_(checker_.vision()) {}
 
   [[nodiscard]] Result<SwitchStudy> run();
 
@@ -70,13 +76,11 @@ class Studying {
   [[nodiscard]] Status sample_sides(const std::vector<LookedAt>& sides);
   [[nodiscard]] Status fit_and_design();
   [[nodiscard]] Status compare();
-  [[nodiscard]] Status look_at_full_detail(double distance_m);
-  [[nodiscard]] Result<LevelCheck> check_level(Level level, double distance_m);
   [[nodiscard]] Result<PlanCheck> check_levels(const SwitchPlan& plan);
   [[nodiscard]] Status refine_levels();
   [[nodiscard]] Status move_idle();
   [[nodiscard]] Result<std::pair<Level, LevelCheck>> best_beyond(Level last, double last_m);
-  [[nodiscard]] Result<std::pair<Level, LevelCheck>> coarsest_unnoticed(Level from, double distance_m);
+  [[nodiscard]] Status find_needed();
   [[nodiscard]] Status look_once();
   [[nodiscard]] Result<SwitchPlan> design(const DetailFit& fit) const;
   [[nodiscard]] double beyond_m() const { return study_.last_m - study_.first_m; }
@@ -88,13 +92,11 @@ class Studying {
   const StudyOptions& options_;
   const Context& context_;
   DetailStage& stage_;
-  VisionModel vision_;
+  LevelChecker checker_;
+  const VisionModel& vision_;
   SwitchStudy study_;
   std::uint32_t levels_ = 0;
   std::vector<Warning> warnings_;
-  std::vector<ObjectPicture> full_;  ///< the sides in full detail from full_distance_m_
-  double full_distance_m_ = 0.0;
-  std::map<std::pair<double, Level>, LevelCheck> checked_;
 };
 
 Status Studying::sample_sides(const std::vector<LookedAt>& sides) {
@@ -173,48 +175,10 @@ Status Studying::compare() {
   return Done{};
 }
 
-Status Studying::look_at_full_detail(double distance_m) {
-  if (full_distance_m_ == distance_m) return Done{};
-  full_.clear();
-  stage_.set_level(model_->record_count());
-  for (const SideStudy& side : study_.sides) {
-    auto picture = stage_.picture(side.side.azimuth_rad, distance_m, Edges::Smooth);
-    if (!picture) return picture.error();
-    full_.push_back(std::move(*picture));
-  }
-  full_distance_m_ = distance_m;
-  return Done{};
-}
-
-Result<LevelCheck> Studying::check_level(Level level, double distance_m) {
-  const auto known = checked_.find({distance_m, level});
-  if (known != checked_.end()) return known->second;
-  if (Status status = look_at_full_detail(distance_m); !status) return status.error();
-  LevelCheck check{distance_m, 0.0, 0.0};
-  double pixels = 0.0;
-  stage_.set_level(level);
-  for (std::size_t i = 0; i < full_.size(); ++i) {
-    if (context_.cancelled()) return Error{ErrorCode::Cancelled, "cancelled", ""};
-    const auto coarse = stage_.picture(study_.sides[i].side.azimuth_rad, distance_m, Edges::Smooth);
-    if (!coarse) return coarse.error();
-    const auto seen = check_vision(full_[i].image, coarse->image, full_[i].mask, vision_);
-    if (!seen) return seen.error();
-    const auto count = static_cast<double>(std::count(full_[i].mask.begin(), full_[i].mask.end(), std::uint8_t{1}));
-    check.ssim += seen->ssim * count;
-    check.noticeable_ratio += seen->noticeable_ratio * count;
-    pixels += count;
-  }
-  stage_.set_level(model_->record_count());
-  check.ssim /= pixels;
-  check.noticeable_ratio /= pixels;
-  checked_.emplace(std::pair{distance_m, level}, check);
-  return check;
-}
-
 Result<PlanCheck> Studying::check_levels(const SwitchPlan& plan) {
   PlanCheck checked;
   for (std::size_t i = 0; i < plan.switch_m.size(); ++i) {
-    auto level = check_level(plan.levels[i], study_.first_m + plan.switch_m[i]);
+    auto level = checker_.check(plan.levels[i], study_.first_m + plan.switch_m[i]);
     if (!level) return level.error();
     checked.levels.push_back(*level);
   }
@@ -231,7 +195,8 @@ Status Studying::refine_levels() {
     LevelCheck& check = study_.measured_check.levels[i];
     const Level farther = i + 1 < plan.levels.size() ? plan.levels[i + 1] : 0;
     if (farther > plan.levels[i] || check.noticeable_ratio > options_.noticeable_limit) {
-      auto found = coarsest_unnoticed(std::max(plan.levels[i], farther), check.distance_m);
+      auto found =
+          checker_.coarsest_unnoticed(std::max(plan.levels[i], farther), model_->record_count(), check.distance_m);
       if (!found) return found.error();
       plan.levels[i] = found->first;
       check = found->second;
@@ -283,7 +248,7 @@ Result<std::pair<Level, LevelCheck>> Studying::best_beyond(Level last, double la
     const double distance_m = last_m * std::pow(study_.last_m / last_m, double(k) / steps);
     const Level unmoved =
         model_->level_of_error(imperceptible_error_m(distance_m, study_.focal_px) * 2.0 * study_.plan.allowed_px);
-    auto found = coarsest_unnoticed(std::min(last, unmoved), distance_m);
+    auto found = checker_.coarsest_unnoticed(std::min(last, unmoved), model_->record_count(), distance_m);
     if (!found) return found.error();
     const double fewer = double(model_->info(last).triangles) - model_->info(found->first).triangles;
     if (fewer * (study_.last_m - distance_m) > most) {
@@ -294,26 +259,21 @@ Result<std::pair<Level, LevelCheck>> Studying::best_beyond(Level last, double la
   return best;
 }
 
-// Halves the stack above a level that shows, to a thousandth of it: the upper end always passes, the finest level being
-// full detail.
-Result<std::pair<Level, LevelCheck>> Studying::coarsest_unnoticed(Level from, double distance_m) {
-  auto check = check_level(from, distance_m);
-  if (!check) return check.error();
-  if (check->noticeable_ratio <= options_.noticeable_limit) return std::pair{from, *check};
-  Level shows = from;
-  std::pair<Level, LevelCheck> passes{model_->record_count(), {distance_m, 1.0, 0.0}};
-  const Level near_enough = std::max(Level{1}, model_->record_count() / 1000);
-  while (passes.first - shows > near_enough) {
-    const Level middle = shows + (passes.first - shows) / 2;
-    check = check_level(middle, distance_m);
-    if (!check) return check.error();
-    if (check->noticeable_ratio > options_.noticeable_limit) {
-      shows = middle;
-    } else {
-      passes = {middle, *check};
-    }
+// From near to far, never finer than nearer: a bar thinner than a pixel takes a larger share of fewer pixels by going
+// away, but is not seen better for that.
+Status Studying::find_needed() {
+  const std::uint32_t count = options_.needed_levels;
+  Level level = model_->record_count();
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const double distance_m = study_.first_m * std::pow(study_.last_m / study_.first_m, double(k) / count);
+    const Level unmoved = model_->level_of_error(imperceptible_error_m(distance_m, study_.focal_px));
+    context_.report("checking", double(k) / count);
+    auto found = checker_.coarsest_unnoticed(std::min(unmoved, level), level, distance_m);
+    if (!found) return found.error();
+    level = found->first;
+    study_.needed.push_back({level, model_->info(level).triangles, found->second});
   }
-  return passes;
+  return Done{};
 }
 
 Status Studying::look_once() {
@@ -343,9 +303,11 @@ Result<SwitchStudy> Studying::run() {
   if (!(study_.first_m > 0.0) || !std::isfinite(study_.last_m)) {
     return Error{ErrorCode::BadArgument, "the model has no extent, so there is no distance to look from", ""};
   }
+  checker_.look_at(*looked_at);
   if (Status status = sample_sides(*looked_at); !status) return status.error();
   if (Status status = fit_and_design(); !status) return status.error();
   if (Status status = compare(); !status) return status.error();
+  if (Status status = find_needed(); !status) return status.error();
   if (Status status = look_once(); !status) return status.error();
   return {std::move(study_), std::move(warnings_)};
 }

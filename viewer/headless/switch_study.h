@@ -29,6 +29,9 @@ struct StudyOptions {
   double reach_ratio = 15.6;
   /// Most of the object's pixels that may differ noticeably from full detail at a switch.
   double noticeable_limit = 0.01;
+  /// Distances, besides those of the plans, at which a level is looked for that passes the same limit: what a
+  /// continuous model needs. 0 = none. Each takes some ten pictures of every side.
+  std::uint32_t needed_levels = 0;
 };
 
 struct SideStudy {
@@ -51,6 +54,13 @@ struct PlanCheck {
   [[nodiscard]] double worst_ssim() const noexcept;
 };
 
+/// The level that a continuous model needs from a distance.
+struct NeededCheck {
+  Level level = 0;
+  std::uint32_t triangles = 0;
+  LevelCheck check;
+};
+
 struct SwitchStudy {
   Sphere bounds;  ///< relative to the model's origin
   double first_m = 0.0;
@@ -71,6 +81,8 @@ struct SwitchStudy {
   /// The equal intervals with all their levels as fine as the cost of `measured` allows.
   std::vector<SwitchPlan> same_cost;
   std::vector<PlanCheck> same_cost_checks;
+  /// At even steps of the logarithm of the distance from d1 on, never finer with distance; none if none were asked for.
+  std::vector<NeededCheck> needed;
   /// The vision model itself on the first side at d1: rendered, simulated, difference (black = none, white = most).
   VisionCheck vision;
   Image rendered;

@@ -95,6 +95,18 @@ Status App::take_loaded() {
     break;
   }
   std::visit([&](const auto& opened) { show(opened); }, **result);
+  return take_plan();
+}
+
+// The plan belongs to the file that was named beside it.
+Status App::take_plan() {
+  control_.plan.reset();
+  if (options_.plan.empty() || loader_.file() != options_.file) return Done{};
+  if (!shown_) return Error{ErrorCode::BadArgument, "a plan is for a model, not for a tileset", options_.plan.string()};
+  auto plan = read_level_plan(options_.plan);
+  if (!plan) return plan.error();
+  if (Status fits = check_level_plan(*plan, *shown_->model); !fits) return fits;
+  control_.plan = std::move(*plan);
   return Done{};
 }
 

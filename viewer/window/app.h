@@ -36,6 +36,7 @@ class App {
   App(const WindowOptions& options, std::unique_ptr<GlfwWindow> window, std::unique_ptr<Gl> gl, Renderer renderer,
       Presenter presenter);
   [[nodiscard]] Status take_loaded();
+  [[nodiscard]] Status take_plan();
   void show(const Loader::Model& model);
   void show(const Loader::Tiles& tiles);
   void frame(const Box& bounds, double yaw_rad);

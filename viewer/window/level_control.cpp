@@ -24,9 +24,16 @@ std::uint32_t LevelControl::triangles_of(float at) const {
   return static_cast<std::uint32_t>(std::lround(std::exp(base_log_ + (finest_log_ - base_log_) * double(at))));
 }
 
+// The distance from which the plan's screen shows the model as large as this view does.
+Level LevelControl::needed_from(const View& view, const ProgressiveModel& model) const {
+  const double distance_m = glm::length(model.bounds().center() - view.eye);
+  return needed_level(*plan, distance_m * plan->focal_px / focal_px(view));
+}
+
 void LevelControl::drive(Cursor& cursor, const View& view, double dt_s) {
   if (mode == LevelMode::Automatic) {
-    cursor.set_target(Target::pixels(view, double(max_error_px)));
+    cursor.set_target(plan ? Target::level(needed_from(view, cursor.model()))
+                           : Target::pixels(view, double(max_error_px)));
     slider = slider_of(cursor.triangle_count());
     return;
   }

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <lodestone/cursor.h>
+#include <lodestone/discrete_levels.h>
 
 namespace lodestone::render {
 
@@ -19,7 +21,10 @@ class LevelControl {
   LevelMode mode = LevelMode::Slider;
   float slider = 1.0F;        ///< 0..1
   float max_error_px = 1.0F;  ///< Automatic
-  float sweep_s = 12.0F;      ///< Sweep: time from one end to the other and back
+  /// Automatic: instead of `max_error_px`, the levels that a plan of the model has measured to be needed from the
+  /// camera's distance.
+  std::optional<LevelPlan> plan;
+  float sweep_s = 12.0F;  ///< Sweep: time from one end to the other and back
 
   [[nodiscard]] float slider_of(std::uint32_t triangles) const;
   [[nodiscard]] std::uint32_t triangles_of(float slider) const;
@@ -28,6 +33,8 @@ class LevelControl {
   void drive(Cursor& cursor, const View& view, double dt_s);
 
  private:
+  [[nodiscard]] Level needed_from(const View& view, const ProgressiveModel& model) const;
+
   double finest_log_ = 0.0;
   double base_log_ = 0.0;
   double direction_ = -1.0;

@@ -26,7 +26,9 @@ int main(int argc, char** argv) {
   app.add_option("--height", options.height_px, "window's height in pixels")->check(CLI::Range(200, 16384));
   app.add_option("--screenshot", options.screenshot, "write the window as PNG once the level is reached, and close");
   app.add_flag("--play", options.play, "start sweeping through the levels");
-  app.add_flag("--perceptual", options.perceptual, "level by the camera's distance: what an eye cannot tell apart");
+  app.add_flag("--perceptual", options.perceptual, "level by the camera's distance: at most half a pixel off");
+  app.add_option("--plan", options.plan,
+                 "level by the camera's distance: what 'lodestone distances' measured to be seen");
   app.add_flag("--wireframe", options.wireframe, "draw triangle edges");
   app.add_flag("--lod-colors", options.lod_colors, "colour by triangle size");
   try {
@@ -35,6 +37,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : wrong_arguments;
   }
   if (*ratio_option) options.ratio = ratio;
+  if (!options.plan.empty()) options.perceptual = true;
   const auto status = lodestone::render::run_window(options);
   if (status) return 0;
   std::fprintf(stderr, "lodestone-view: %s\n", lodestone::to_line(status.error()).c_str());

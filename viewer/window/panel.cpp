@@ -34,9 +34,13 @@ void level_controls(const PanelState& state) {
   if (ImGui::Checkbox("From the camera's distance", &automatic)) {
     control.mode = automatic ? LevelMode::Automatic : LevelMode::Slider;
   }
-  ImGui::SetNextItemWidth(-1.0F);
-  ImGui::SliderFloat("##pixels", &control.max_error_px, 0.1F, 20.0F, "error at most %.2f pixels",
-                     ImGuiSliderFlags_Logarithmic);
+  if (control.plan) {
+    ImGui::TextUnformatted("what the plan found to be seen");
+  } else {
+    ImGui::SetNextItemWidth(-1.0F);
+    ImGui::SliderFloat("##pixels", &control.max_error_px, 0.1F, 20.0F, "error at most %.2f pixels",
+                       ImGuiSliderFlags_Logarithmic);
+  }
 
   ImGui::Separator();
   const std::uint32_t triangles = state.cursor->triangle_count();

@@ -19,8 +19,10 @@ struct WindowOptions {
   /// Written, panel and all, once the model has arrived at its level; the window closes then.
   std::filesystem::path screenshot;
   bool play = false;  ///< start the sweep
-  /// Start with the level that the camera's distance asks for: at most half a pixel off (equation 17 of perception.h).
+  /// Start with the level that the camera's distance asks for: what `plan` has measured to be needed, without one at
+  /// most half a pixel off (equation 17 of perception.h).
   bool perceptual = false;
+  std::filesystem::path plan;  ///< plan.json of `lodestone distances` for `file`
   bool wireframe = false;
   bool lod_colors = false;
 };

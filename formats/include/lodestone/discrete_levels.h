@@ -25,6 +25,12 @@ struct PlannedLevel {
   double error_m = 0.0;
 };
 
+/// The level that a continuous model needs from a distance: coarser ones were seen to differ.
+struct NeededLevel {
+  double distance_m = 0.0;  ///< from the camera to the middle of the model
+  Level level = 0;
+};
+
 struct LevelPlan {
   std::vector<PlannedLevel> levels;  ///< ascending distances; the first from 0: the finest level
   double last_m = 0.0;               ///< beyond it the model is smaller than a pixel
@@ -32,7 +38,17 @@ struct LevelPlan {
   double focal_px = 0.0;             ///< pixels that a metre across covers at a distance of a metre
   double height_px = 0.0;            ///< of the screen
   double width_px = 0.0;
+  std::vector<NeededLevel> needed;  ///< ascending distances, never finer; may be empty
 };
+
+/// Where a continuous model should be from a distance, on the screen of the plan (for another one multiply the distance
+/// by the plan's focal_px over the other's): `cursor.set_target(Target::level(needed_level(plan, distance_m)))`.
+/// Between the distances of `plan.needed` evenly in the logarithm of the distance, in full detail before the first;
+/// without `needed` the discrete level that is shown there. Precondition: as read_level_plan gives it.
+[[nodiscard]] Level needed_level(const LevelPlan& plan, double distance_m) noexcept;
+
+/// Whether the plan was made for this model, by its levels and their triangles; else BadArgument.
+[[nodiscard]] Status check_level_plan(const LevelPlan& plan, const ProgressiveModel& model);
 
 /// JSON; numbers are written so that they read back the same. Errors: BadData with what is missing or out of order.
 [[nodiscard]] Status write_level_plan(const LevelPlan& plan, const std::filesystem::path& file);

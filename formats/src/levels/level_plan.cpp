@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/discrete_levels.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -30,7 +31,24 @@ LevelPlan plan_of(const Json& json) {
     plan.levels.push_back({level.at("from_m").get<double>(), level.at("level").get<Level>(),
                            level.at("triangles").get<std::uint32_t>(), level.at("error_m").get<double>()});
   }
+  if (!json.contains("needed")) return plan;
+  for (const Json& needed : json.at("needed")) {
+    plan.needed.push_back({needed.at("distance_m").get<double>(), needed.at("level").get<Level>()});
+  }
   return plan;
+}
+
+std::string fault_of(const std::vector<NeededLevel>& needed, Level finest) {
+  constexpr std::size_t most_needed = 1000;
+  if (needed.size() > most_needed) return "a plan has at most 1000 needed levels";
+  NeededLevel before{0.0, finest};
+  for (const NeededLevel& next : needed) {
+    if (!(next.distance_m > before.distance_m) || !std::isfinite(next.distance_m) || next.level > before.level) {
+      return "needed levels must get coarser with distance";
+    }
+    before = next;
+  }
+  return {};
 }
 
 // Empty if the plan can be used.
@@ -49,10 +67,39 @@ std::string fault_of(const LevelPlan& plan) {
     }
     if (level.level > before.level) return "level " + std::to_string(i) + " is finer than the one before";
   }
-  return {};
+  return fault_of(plan.needed, plan.levels.front().level);
 }
 
 }  // namespace
+
+Level needed_level(const LevelPlan& plan, double distance_m) noexcept {
+  const auto& needed = plan.needed;
+  if (needed.empty()) {
+    const auto is_beyond = [&](const PlannedLevel& level) { return level.from_m > distance_m; };
+    const auto next = std::find_if(plan.levels.begin() + 1, plan.levels.end(), is_beyond);
+    return std::prev(next)->level;
+  }
+  if (!(distance_m >= needed.front().distance_m)) return plan.levels.front().level;
+  const auto next = std::upper_bound(needed.begin(), needed.end(), distance_m,
+                                     [](double d, const NeededLevel& n) { return d < n.distance_m; });
+  if (next == needed.end()) return needed.back().level;
+  const NeededLevel& before = *std::prev(next);
+  const double place = std::log(distance_m / before.distance_m) / std::log(next->distance_m / before.distance_m);
+  return before.level - static_cast<Level>(place * (before.level - next->level));
+}
+
+Status check_level_plan(const LevelPlan& plan, const ProgressiveModel& model) {
+  if (plan.levels.empty()) return Error{ErrorCode::BadArgument, "the plan has no levels", ""};
+  for (const PlannedLevel& level : plan.levels) {
+    if (level.level > model.record_count() || model.info(level.level).triangles != level.triangles) {
+      return Error{ErrorCode::BadArgument,
+                   "the plan was made for another model: level " + std::to_string(level.level) + " with " +
+                       std::to_string(level.triangles) + " triangles is not there",
+                   ""};
+    }
+  }
+  return Done{};
+}
 
 Status write_level_plan(const LevelPlan& plan, const std::filesystem::path& file) {
   if (const std::string fault = fault_of(plan); !fault.empty()) {
@@ -64,6 +111,9 @@ Status write_level_plan(const LevelPlan& plan, const std::filesystem::path& file
   for (const PlannedLevel& level : plan.levels) {
     json["levels"].push_back(
         {{"from_m", level.from_m}, {"level", level.level}, {"triangles", level.triangles}, {"error_m", level.error_m}});
+  }
+  for (const NeededLevel& needed : plan.needed) {
+    json["needed"].push_back({{"distance_m", needed.distance_m}, {"level", needed.level}});
   }
   const std::string text = json.dump(2) + "\n";
   return write_whole_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});

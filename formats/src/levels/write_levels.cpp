@@ -49,24 +49,11 @@ Status write_tileset(const LevelPlan& plan, const glm::dvec3& middle_m, const st
   return write_whole_file(folder / "tileset.json", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-Status check(const ProgressiveModel& model, const LevelPlan& plan) {
-  if (plan.levels.empty()) return Error{ErrorCode::BadArgument, "the plan has no levels", ""};
-  for (const PlannedLevel& level : plan.levels) {
-    if (level.level > model.record_count() || model.info(level.level).triangles != level.triangles) {
-      return Error{ErrorCode::BadArgument,
-                   "the plan was made for another model: level " + std::to_string(level.level) + " with " +
-                       std::to_string(level.triangles) + " triangles is not there",
-                   ""};
-    }
-  }
-  return Done{};
-}
-
 }  // namespace
 
 Status write_levels(const ProgressiveModel& model, const LevelPlan& plan, const std::filesystem::path& folder,
                     const Context& context) {
-  if (Status status = check(model, plan); !status) return status;
+  if (Status status = check_level_plan(plan, model); !status) return status;
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
   if (fault) return Error{ErrorCode::Unreadable, "the folder cannot be made: " + fault.message(), folder.string()};

@@ -2,11 +2,30 @@
 // Writes a GLB of every kind into a folder, for gltf-validator (gltf_validator.sh).
 #include <cstdio>
 
+#include <lodestone/discrete_levels.h>
+#include <lodestone/edge_collapse.h>
 #include <lodestone/formats.h>
 
 #include "shapes.h"
 
 using namespace lodestone;
+
+namespace {
+
+// Three levels of a textured model: a GLB each, and all in one with MSFT_lod.
+Status write_plan(const Mesh& mesh, const std::filesystem::path& folder) {
+  const auto built = build_by_edge_collapse(mesh);
+  if (!built) return built.error();
+  const ProgressiveModel& model = *built->model;
+  LevelPlan plan{.last_m = 9000.0, .radius_m = 5.0, .focal_px = 1000.0, .height_px = 1024.0, .width_px = 1280.0};
+  for (const Level level : {model.record_count(), model.record_count() / 2, Level{0}}) {
+    const double from_m = 20.0 * static_cast<double>(plan.levels.size());
+    plan.levels.push_back({from_m, level, model.info(level).triangles, model.error_m(level)});
+  }
+  return write_levels(model, plan, folder);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) return 1;
@@ -26,6 +45,10 @@ int main(int argc, char** argv) {
   rich.textures.push_back(texture);
   all.push_back({"rich", rich});
   all.push_back({"large", test::grid(300, 300)});  // needs 32-bit indices
+  if (auto done = write_plan(rich, folder); !done) {
+    std::fprintf(stderr, "levels: %s\n", to_line(done.error()).c_str());
+    return 1;
+  }
   int number = 0;
   for (const auto& [name, mesh] : all) {
     const auto file = folder / ("mesh" + std::to_string(number++) + ".glb");
