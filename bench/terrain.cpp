@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Tiles of 257 x 257 posts cut from an SRTM file, one thread, greedy insertion and edge collapse at 1, 5 and 10 m:
+// Tiles of 257 x 257 posts cut from an SRTM file, one thread, all methods (or one) at 1, 5, 10 and 40 m:
 // samples per second of processor time, triangles, true error. bench/terrain_delatin.mjs does the same with npm's
 // delatin.
 //
-//   bench_terrain N30E079.hgt
+//   bench_terrain N30E079.hgt [greedy|edge-collapse|random|grid|hierarchy|wlop]
 #include <lodestone/terrain.h>
 
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "terrain/edge_collapse.h"
 #include "terrain/error.h"
 #include "terrain/greedy.h"
+#include "terrain/point_set.h"
 #include "thread_clock.h"
 
 namespace {
@@ -53,21 +54,31 @@ std::vector<TileLattice> read_tiles(const std::string& file) {
   return tiles;
 }
 
-enum class Method { Greedy, Collapse };
+constexpr std::pair<TerrainMethod, const char*> methods[] = {{TerrainMethod::Greedy, "greedy"},
+                                                             {TerrainMethod::EdgeCollapse, "edge-collapse"},
+                                                             {TerrainMethod::PointsRandom, "random"},
+                                                             {TerrainMethod::PointsGrid, "grid"},
+                                                             {TerrainMethod::PointsHierarchy, "hierarchy"},
+                                                             {TerrainMethod::PointsWlop, "wlop"}};
 
-Tin make(const TileLattice& lattice, double tolerance_m, double step_m, Method method) {
+Tin make(const TileLattice& lattice, double tolerance_m, double step_m, TerrainMethod method) {
   std::vector<Tin::Vertex> chain;
   for (const Side side : all_sides) {
     for (const Tin::Vertex& vertex : border_vertices(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(vertex);
   }
-  if (method == Method::Greedy) {
+  if (is_point_set(method)) {
+    const PointSetTask task{
+        .method = method, .samples = {.spacing_m = {80.0, 92.0}}, .tolerance_m = tolerance_m, .step_m = step_m};
+    return point_set_tin(lattice, chain, task).tin;
+  }
+  if (method == TerrainMethod::Greedy) {
     return greedy_insertion(lattice, chain, {.tolerance_m = tolerance_m, .step_m = step_m}).tin;
   }
   const Tin fine = greedy_insertion(lattice, chain, {.tolerance_m = 0.75 * tolerance_m, .step_m = step_m}).tin;
   return collapse_edges(fine, lattice, {.limit_m = tolerance_m + 0.5 * step_m, .step_m = step_m});
 }
 
-void bench(const std::vector<TileLattice>& tiles, double tolerance_m, Method method) {
+void bench(const std::vector<TileLattice>& tiles, double tolerance_m, TerrainMethod method, const char* name) {
   const double step_m = std::max(0.25, std::exp2(std::floor(std::log2(tolerance_m / 32.0))));
   std::size_t triangles = 0;
   double seconds = 0.0, worst_m = 0.0;
@@ -82,20 +93,20 @@ void bench(const std::vector<TileLattice>& tiles, double tolerance_m, Method met
   std::printf(
       "{\"method\": \"%s\", \"tolerance_m\": %g, \"tiles\": %zu, \"triangles\": %zu, \"true_error_m\": %.4f, "
       "\"samples_per_second\": %.0f}\n",
-      method == Method::Greedy ? "greedy" : "edge-collapse", tolerance_m, tiles.size(), triangles, worst_m,
-      samples / seconds);
+      name, tolerance_m, tiles.size(), triangles, worst_m, samples / seconds);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: bench_terrain FILE.hgt\n");
+  if (argc < 2 || argc > 3) {
+    std::fprintf(stderr, "usage: bench_terrain FILE.hgt [METHOD]\n");
     return 1;
   }
   const std::vector<TileLattice> tiles = read_tiles(argv[1]);
-  for (const Method method : {Method::Greedy, Method::Collapse}) {
-    for (const double tolerance_m : {1.0, 5.0, 10.0, 40.0}) bench(tiles, tolerance_m, method);
+  for (const auto& [method, name] : methods) {
+    if (argc == 3 && std::string{argv[2]} != name) continue;
+    for (const double tolerance_m : {1.0, 5.0, 10.0, 40.0}) bench(tiles, tolerance_m, method, name);
   }
   return 0;
 }

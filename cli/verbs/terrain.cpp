@@ -33,6 +33,9 @@ class Terrain final : public Verb {
   std::optional<std::string> max_error_;
   std::optional<std::uint32_t> max_zoom_;
   std::uint32_t edges_ = 0;
+  double keep_ratio_ = 0.05;
+  std::uint32_t cell_posts_ = 5;
+  std::uint32_t cluster_posts_ = 50;
   std::string nodata_ = "skip";
   double fill_m_ = 0.0;
   double scale_ = 1.0;
@@ -47,11 +50,16 @@ void Terrain::declare(Arguments& arguments) {
   arguments.file("RASTER", raster_, "Heights: GeoTIFF, HGT, netCDF, ASCII grid, VRT", Need::Required);
   arguments.file("-o,--output", output_, "Folder to write; empty, or with --resume one begun before", Need::Required);
   arguments.choice("--as", format_, {"quantized-mesh", "3dtiles"}, "What clients read");
-  arguments.choice("--method", method_, {"greedy", "edge-collapse"}, "How tiles are simplified");
+  arguments.choice("--method", method_,
+                   {"greedy", "edge-collapse", "points-random", "points-grid", "points-hierarchy", "points-wlop"},
+                   "How tiles are simplified");
   arguments.text("--max-error", max_error_,
                  "Largest error in height at the finest zoom, doubled per zoom above; or one by zoom from 0 on: "
                  "80m,40m,20m (default: a sixteenth of the spacing of posts)");
   arguments.count("--target-edges", edges_, 0, none, "Edge collapse: edges of a tile; 0 = by --max-error");
+  arguments.number("--keep", keep_ratio_, 1e-4, 1.0, "Random and WLOP points: share of the posts");
+  arguments.count("--cell", cell_posts_, 1, tile_intervals, "Grid points: posts along the side of a cell");
+  arguments.count("--cluster", cluster_posts_, 1, 65536, "Hierarchy points: most posts of a cluster");
   arguments.count("--max-zoom", max_zoom_, 0, max_terrain_zoom, "Finest zoom (default: as dense as the raster)");
   arguments.choice("--nodata", nodata_, {"skip", "fill", "interpolate"}, "What becomes of missing samples");
   arguments.number("--fill", fill_m_, -20000.0, 20000.0, "Height for --nodata fill, outside the raster as well");
@@ -74,7 +82,18 @@ Result<RasterOptions> Terrain::raster_options() const {
 Result<TerrainOptions> Terrain::terrain_options() const {
   TerrainOptions options;
   if (max_zoom_) options.max_zoom = *max_zoom_;
-  if (method_ == "edge-collapse") options.method = TerrainMethod::EdgeCollapse;
+  constexpr std::pair<const char*, TerrainMethod> methods[] = {{"greedy", TerrainMethod::Greedy},
+                                                               {"edge-collapse", TerrainMethod::EdgeCollapse},
+                                                               {"points-random", TerrainMethod::PointsRandom},
+                                                               {"points-grid", TerrainMethod::PointsGrid},
+                                                               {"points-hierarchy", TerrainMethod::PointsHierarchy},
+                                                               {"points-wlop", TerrainMethod::PointsWlop}};
+  for (const auto& [name, method] : methods) {
+    if (method_ == name) options.method = method;
+  }
+  options.points.keep_ratio = {keep_ratio_};
+  options.points.cell_posts = {cell_posts_};
+  options.points.cluster_posts = {cluster_posts_};
   if (edges_ > 0) options.target_edges = {edges_};
   options.sea_level_m = sea_level_m_.value_or(quiet_nan);
   if (!max_error_) return options;

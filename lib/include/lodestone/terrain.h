@@ -16,6 +16,7 @@
 ///     border as a function of the border's own posts;
 ///   - `max_error_m` is not an estimate: every triangle, in the quantised place where a client will decode it, was
 ///     rasterised against every post. Greedy and EdgeCollapse by error: at most the tolerance plus half a height step.
+///     Point sets and EdgeCollapse by count keep the tolerance on borders only.
 ///
 /// Follows Campos, Quintana, Garcia, Schmitt, Spoelstra and Schaap 2020, "3D simplification methods and large scale
 /// terrain tiling", with borders that need no schedule.
@@ -90,6 +91,28 @@ class HeightSource {
 enum class TerrainMethod {
   Greedy,        ///< Greedy insertion (Garland and Heckbert): fewest triangles for an error in height, fast.
   EdgeCollapse,  ///< Collapses a finer TIN (Lindstrom and Turk): fewer triangles still, slower.
+  // Points that stand for all posts, whatever the error; sharp edges of the ground stay.
+  PointsRandom,     ///< A share of the posts by chance.
+  PointsGrid,       ///< One post by chance of each cell of a grid.
+  PointsHierarchy,  ///< One post of each cluster; clusters are smaller where the ground bends (Pauly et al.).
+  PointsWlop,       ///< Evenly spread, smooths (weighted locally optimal projection, Huang et al.).
+};
+[[nodiscard]] constexpr bool is_point_set(TerrainMethod method) noexcept {
+  return method >= TerrainMethod::PointsRandom;
+}
+
+/// How points are chosen. Lists: by zoom, from zoom 0 on; the last value holds for finer zooms.
+struct PointSetOptions {
+  std::vector<double> keep_ratio{0.05};          ///< Random, Wlop: share of the posts
+  std::vector<std::uint32_t> cell_posts{5};      ///< Grid: side of a cell
+  std::vector<std::uint32_t> cluster_posts{50};  ///< Hierarchy: most posts of a cluster
+  std::vector<double> surface_variation{0.001};  ///< Hierarchy: least spread as a share of all, at most; 0 to 1/3
+  double radius_posts = 0.0;                     ///< Wlop: of the neighbourhood; 0 = twice the distance of points
+  std::uint32_t iterations = 15;                 ///< Wlop
+  /// Sharp edges are those whose triangles are turned by more against each other, in coordinates scaled to the unit
+  /// cube, so many in a row at least. They are simplified to the tolerance of the zoom, as a distance in space.
+  double feature_angle_rad = 1.0471975511965976;
+  std::uint32_t feature_edges = 5;
 };
 
 struct TerrainOptions {
@@ -110,6 +133,8 @@ struct TerrainOptions {
   /// paper.
   double volume_weight = 0.5;
   double shape_weight = 1e-10;
+
+  PointSetOptions points;
 
   /// Posts at or below this height are water (a mask is made), NaN: no mask.
   double sea_level_m = std::numeric_limits<double>::quiet_NaN();

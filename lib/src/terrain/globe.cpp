@@ -52,6 +52,13 @@ std::vector<glm::dvec3> ecef_positions_m(const TerrainTile& tile) {
 
 namespace terrain {
 
+glm::dvec2 post_spacing_m(const TileId& tile) noexcept {
+  const GeoBox box = bounds_of(tile);
+  const double latitude = 0.5 * (box.south_deg + box.north_deg) * radians;
+  const double spacing_m = (box.north_deg - box.south_deg) * radians / tile_intervals * major_axis_m;
+  return {spacing_m * std::cos(latitude), spacing_m};
+}
+
 Normals::Normals(const TileId& tile) : tile_{tile} {
   const std::int64_t around = std::int64_t{2 * tile_intervals} << tile.zoom;
   for (int i = 0; i <= size; ++i) {

@@ -9,6 +9,9 @@
 
 namespace lodestone::terrain {
 
+// Metres between posts in the middle of a tile, eastwards and northwards.
+[[nodiscard]] glm::dvec2 post_spacing_m(const TileId& tile) noexcept;
+
 class Normals {
  public:
   explicit Normals(const TileId& tile);

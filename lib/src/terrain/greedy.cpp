@@ -11,6 +11,7 @@
 
 #include "terrain/delaunay.h"
 #include "terrain/field.h"
+#include "terrain/over_data.h"
 
 namespace lodestone::terrain {
 namespace {
@@ -142,33 +143,11 @@ class Greedy {
     return top;
   }
 
-  // A triangle lies wholly over cells with data or wholly over others: any cell that it overlaps tells.
-  [[nodiscard]] bool over_data(const std::uint32_t* v) const {
-    const auto& posts = triangulation_.posts();
-    for (int k = 0; k < 3; ++k) {
-      if (std::isnan(heights_[v[k]])) return false;
-    }
-    const int x = (posts[v[0]].x + posts[v[1]].x + posts[v[2]].x) / 3;
-    const int y = (posts[v[0]].y + posts[v[1]].y + posts[v[2]].y) / 3;
-    return lattice_.cell(std::min(x / 128, size - 1), std::min(y / 128, size - 1));
-  }
-
   [[nodiscard]] Tin result() const {
-    Tin tin;
-    std::vector<std::uint32_t> name(heights_.size(), none);
-    for (std::uint32_t t = 0; t < triangulation_.triangle_count(); ++t) {
-      const std::uint32_t* v = triangulation_.corners().data() + 3 * std::size_t{t};
-      if (!over_data(v)) continue;
-      for (int k = 0; k < 3; ++k) {
-        if (name[v[k]] == none) {
-          name[v[k]] = static_cast<std::uint32_t>(tin.vertices.size());
-          const Post p = triangulation_.posts()[v[k]];
-          tin.vertices.push_back({p.x, p.y, snapped_m(field_.to_m(heights_[v[k]]), step_m_)});
-        }
-        tin.triangles.push_back(name[v[k]]);
-      }
-    }
-    return tin;
+    std::vector<double> heights_m;
+    heights_m.reserve(heights_.size());
+    for (const double units : heights_) heights_m.push_back(field_.to_m(units));
+    return tin_over_data(triangulation_, lattice_, heights_m, step_m_);
   }
 
   const TileLattice& lattice_;

@@ -2,6 +2,7 @@
 // The posts of one tile with a rim of one post around them, and what follows from them alone.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -34,6 +35,11 @@ struct Post {
 
 // The post nearest to a quantised coordinate.
 [[nodiscard]] constexpr int nearest_post(int quantised) noexcept { return (quantised + 64) / 128; }
+
+// The column or row of cells that a quantised coordinate lies in.
+[[nodiscard]] constexpr int cell_of(int quantised) noexcept {
+  return std::min(quantised < 128 * (size / 2 + 1) - 1 ? quantised / 128 : (quantised + 1) / 128, size - 1);
+}
 
 class TileLattice {
  public:

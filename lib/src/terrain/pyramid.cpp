@@ -66,6 +66,27 @@ class TerrainPlanner {
     for (const std::uint32_t divisions : options_.grid_divisions) {
       if (!std::has_single_bit(divisions) || divisions > 64) return bad("grid divisions are 1, 2, 4, ... 64");
     }
+    return check_points();
+  }
+
+  [[nodiscard]] Status check_points() const {
+    const PointSetOptions& points = options_.points;
+    const auto all = [](const auto& values, auto in_range) {
+      return !values.empty() && std::all_of(values.begin(), values.end(), in_range);
+    };
+    if (!all(points.keep_ratio, [](double ratio) { return ratio > 0.0 && ratio <= 1.0; })) {
+      return bad("the share of posts to keep is above 0 and at most 1");
+    }
+    if (!all(points.cell_posts, [](std::uint32_t posts) { return posts > 0 && posts <= size; })) {
+      return bad("cells are 1 to 256 posts wide");
+    }
+    if (!all(points.cluster_posts, [](std::uint32_t posts) { return posts > 0; }) ||
+        !all(points.surface_variation, [](double variation) { return variation >= 0.0; })) {
+      return bad("clusters have a post at least and vary by 0 or more");
+    }
+    if (!(points.radius_posts >= 0.0 && points.radius_posts <= size) || !(points.feature_angle_rad > 0.0)) {
+      return bad("the radius is 0 to 256 posts, the angle of sharp edges above 0");
+    }
     return Done{};
   }
 
@@ -228,6 +249,13 @@ class TerrainPlanner {
       add(zoom.target_edges);
     }
     add(static_cast<double>(options_.method));
+    const PointSetOptions& points = options_.points;
+    for (const double ratio : points.keep_ratio) add(ratio);
+    for (const std::uint32_t posts : points.cell_posts) add(posts);
+    for (const std::uint32_t posts : points.cluster_posts) add(posts);
+    for (const double variation : points.surface_variation) add(variation);
+    for (const double number : {points.radius_posts, points.feature_angle_rad}) add(number);
+    for (const std::uint32_t number : {points.iterations, points.feature_edges}) add(number);
     add(options_.volume_weight);
     add(options_.shape_weight);
     add(std::isnan(options_.sea_level_m) ? std::numeric_limits<double>::infinity() : options_.sea_level_m);

@@ -4,13 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/hash.h"
 #include "terrain/chains.h"
 #include "terrain/edge_collapse.h"
 #include "terrain/globe.h"
+#include "terrain/point_set.h"
 
 namespace lodestone {
 
 using namespace terrain;
+
+namespace {
+
+template <class T>
+T at_zoom(const std::vector<T>& values, std::uint32_t zoom) {
+  return values[std::min<std::size_t>(zoom, values.size() - 1)];
+}
+
+}  // namespace
 
 Status TileBuilder::read_posts() {
   const std::int64_t column = std::int64_t{id_.x} * size, row = std::int64_t{id_.y} * size;
@@ -80,8 +91,30 @@ std::vector<Post> TileBuilder::fixed_posts() const {
 MeasuredTin TileBuilder::make_tin() const {
   const std::vector<Post> inside = fixed_posts();
   const GreedyOptions greedy{.tolerance_m = zoom_.tolerance_m, .step_m = zoom_.step_m, .inside = inside};
-  if (pyramid_.options_.method == TerrainMethod::Greedy) return greedy_insertion(lattice_, border_, greedy);
-  return collapsed(greedy);
+  // What is put in place of nothing is flat and needs no points of its own.
+  const TerrainMethod method = placeholder_ ? TerrainMethod::Greedy : pyramid_.options_.method;
+  if (method == TerrainMethod::Greedy) return greedy_insertion(lattice_, border_, greedy);
+  return is_point_set(method) ? point_set(inside) : collapsed(greedy);
+}
+
+MeasuredTin TileBuilder::point_set(const std::vector<Post>& inside) const {
+  const PointSetOptions& options = pyramid_.options_.points;
+  PointSetTask task{.method = pyramid_.options_.method,
+                    .feature_angle_rad = options.feature_angle_rad,
+                    .feature_edges = options.feature_edges,
+                    .tolerance_m = zoom_.tolerance_m,
+                    .step_m = zoom_.step_m,
+                    .inside = inside};
+  task.samples = {.keep_ratio = at_zoom(options.keep_ratio, id_.zoom),
+                  .cell_posts = static_cast<int>(at_zoom(options.cell_posts, id_.zoom)),
+                  .cluster_posts = at_zoom(options.cluster_posts, id_.zoom),
+                  .surface_variation = at_zoom(options.surface_variation, id_.zoom),
+                  .iterations = static_cast<int>(options.iterations),
+                  .spacing_m = post_spacing_m(id_),
+                  .seed = hash_combine(hash_combine(id_.zoom, id_.x), id_.y)};
+  task.samples.radius_posts =
+      options.radius_posts > 0.0 ? options.radius_posts : 2.0 / std::sqrt(task.samples.keep_ratio);
+  return point_set_tin(lattice_, border_, task);
 }
 
 // Begins with a TIN that is finer than asked: what it has too many of, collapsing removes from the best places.

@@ -22,6 +22,7 @@ class TileBuilder {
   void fill_placeholder();
   [[nodiscard]] std::vector<terrain::Post> fixed_posts() const;
   [[nodiscard]] terrain::MeasuredTin make_tin() const;
+  [[nodiscard]] terrain::MeasuredTin point_set(const std::vector<terrain::Post>& inside) const;
   [[nodiscard]] terrain::MeasuredTin collapsed(terrain::GreedyOptions greedy) const;
   void put_vertices(const terrain::Tin& tin, TerrainTile& tile) const;
   void put_borders(TerrainTile& tile) const;
