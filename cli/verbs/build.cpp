@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "facet_report.h"
 #include "mesh_input.h"
 #include "verbs.h"
 
@@ -25,6 +26,7 @@ class Build final : public Verb {
   [[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> build(const Mesh& source, Session& session) const;
 
   MeshInput input_;
+  PlaneTolerance tolerance_;
   std::filesystem::path output_;
   std::string method_ = "auto";
   std::string placement_ = "optimal";
@@ -47,6 +49,7 @@ void Build::declare(Arguments& arguments) {
   arguments.count("--target-triangles", target_triangles_, 0, none,
                   "Stop at so many triangles, 0 = as few as possible");
   arguments.length_m("--max-error", max_error_m_, "Stop before the error exceeds this");
+  tolerance_.declare(arguments);
   arguments.count("--quantize", quantize_bits_, 0, 20, "Bits per coordinate in the file, 0 = lossless");
   arguments.flag("--reference-textures", reference_textures_, "Refer to texture files instead of embedding them");
 }
@@ -85,9 +88,10 @@ Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source,
     return built->model;
   };
   if (choose_method(source, session) == "facet-shift") {
-    FacetShiftOptions options{.target_triangles = target_triangles_};
+    FacetShiftOptions options{.tolerance = tolerance_.value(), .target_triangles = target_triangles_};
     if (max_error_m_) options.max_error_m = *max_error_m_;
     auto built = build_by_facet_shift(source, options, session.context());
+    if (built) report_shifts(built->report, session.report());
     return keep(built);
   }
   auto built = build_by_edge_collapse(source, options(), session.context());
@@ -125,6 +129,15 @@ Status Build::run(Session& session) {
   report.set("file_bytes", *bytes);
   report.set("build_seconds", build_seconds);
   report.set("triangles_per_second", source.triangle_count() / build_seconds);
+  for (const NamedLevel& named : model.data().named_levels) {
+    const LevelInfo info = model.info(named.level);
+    Report level;
+    level.set("name", named.name);
+    level.set("level", info.level);
+    level.set("triangles", info.triangles);
+    level.set("error_m", info.error_m);
+    report.add("named_levels", level);
+  }
   return Done{};
 }
 

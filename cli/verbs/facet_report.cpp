@@ -118,4 +118,22 @@ void report_facets(const FacetGraph& graph, Report& report) {
   report.show(lines_for_people(graph, counts, areas_m2, walls));
 }
 
+void report_shifts(const FacetShiftReport& done, Report& report) {
+  Report shifts;
+  shifts.set("surfaces", done.surfaces);
+  shifts.set("walls", done.walls);
+  shifts.set("roofs", done.roofs);
+  shifts.set("openings", done.openings);
+  shifts.set("closed_t_junctions", done.closed_t_junctions);
+  shifts.set("shifts", done.shifts);
+  shifts.set("openings_flattened", done.openings_flattened);
+  shifts.set("openings_filled", done.openings_filled);
+  shifts.set("parts_vanished", done.parts_vanished);
+  shifts.set("points_merged", done.points_merged);
+  shifts.set("tilting_collapses", done.tilting_collapses);
+  shifts.set("reached_block", done.reached_block);
+  if (!done.reached_block) shifts.set("held_because", done.block_sentence);
+  report.set("facet_shift", shifts);
+}
+
 }  // namespace lodestone::cli

@@ -21,4 +21,7 @@ class PlaneTolerance {
 // Key "facets": surfaces and area by class, families, steps and roofs; and a few lines for people.
 void report_facets(const FacetGraph& graph, Report& report);
 
+// Key "facet_shift": what was done, and whether the block was reached or what holds the model above it.
+void report_shifts(const FacetShiftReport& done, Report& report);
+
 }  // namespace lodestone::cli

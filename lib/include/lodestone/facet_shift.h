@@ -120,6 +120,8 @@ struct FacetShiftReport {
   std::uint32_t points_merged = 0;       ///< corner points that slid within their planes onto a neighbour
   std::uint32_t tilting_collapses = 0;   ///< the same where some face had to leave its direction
   std::string sentence;                  ///< what holds the model above the target, empty if it was reached
+  bool reached_block = false;            ///< the base is a closed prism: upright walls, level roof and ground
+  std::string block_sentence;            ///< what holds the model from it, empty if it was reached
 };
 
 struct FacetShiftResult {
@@ -128,11 +130,12 @@ struct FacetShiftResult {
 };
 
 /// Builds the stack from the source (finest level, bit for bit but for the cuts at T-junctions, see
-/// compare_with_source()) down to the target. Levels are named: "lod3", "lod2"
-/// and "lod1" are the coarsest within 0.5, 2 and 5 m of the source (the positional accuracy that CityGML 2.0 asks of
-/// these), "block" is the base. One thread; the same bytes always. Time about 50 to 80 us per source triangle;
-/// memory about 400 bytes per source triangle. Errors: BadData from validate(mesh),
-/// Cancelled.
+/// compare_with_source()) down to the target, at last to a closed prism: its sides stand in the main walls, half of the
+/// ground it covers is covered up to its roof or higher. Levels are named: "lod3" and "lod2" are the coarsest within
+/// 0.5 and 2 m of the source (the positional accuracy that CityGML 2.0 asks of these), "lod1" and "block" are the
+/// prism; where it was not reached there is no "block", and "lod1" is the coarsest within 5 m. One thread; the same
+/// bytes always. Time about 50 to 80 us per source triangle; memory about 400 bytes per source triangle. Errors:
+/// BadData from validate(mesh), Cancelled.
 [[nodiscard]] Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShiftOptions& options = {},
                                                             const Context& context = {});
 

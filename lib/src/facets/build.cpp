@@ -12,6 +12,7 @@
 
 #include <lodestone/repair.h>
 
+#include "facets/block.h"
 #include "facets/facet_mesh.h"
 #include "facets/judge.h"
 #include "facets/openings.h"
@@ -30,6 +31,7 @@ constexpr double last_share = 1e-4;  // of (area * diagonal^2): beyond it the bl
 constexpr std::uint32_t rounds_per_price = 4;
 constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
 constexpr std::size_t few_neighbours = 24;    // with more it is looked at again only when the others are done
+constexpr double spare_ratio = 1.5;           // faces left for the block to choose from, over those it needs
 constexpr double most_gone = 4.0;             // faces that a slide takes; a few take more
 
 class Builder {
@@ -41,7 +43,11 @@ class Builder {
         mesh_(make_facet_mesh(source, options.tolerance, degenerate_)),
         moved_(mesh_),
         planner_(mesh_),
-        parts_(mesh_) {}
+        parts_(mesh_),
+        block_(mesh_) {
+    // The block is made of what is left: there must be some to choose from.
+    least_faces_ = std::max(options.target_triangles, static_cast<std::uint32_t>(spare_ratio * block_.face_count()));
+  }
 
   progressive::EditLog run(FacetShiftReport& report);
 
@@ -69,7 +75,9 @@ class Builder {
   bool close_openings(double price);
   void offer_around(std::uint32_t point);
   bool offer_later();
-  [[nodiscard]] bool done() const { return mesh_.live_faces <= options_.target_triangles || context_.cancelled(); }
+  bool become_block();
+  [[nodiscard]] std::string why_no_block() const;
+  [[nodiscard]] bool done() const { return mesh_.live_faces <= least_faces_ || context_.cancelled(); }
 
   const FacetShiftOptions& options_;
   const Context& context_;
@@ -79,6 +87,8 @@ class Builder {
   Moved moved_;
   Planner planner_;
   PartFinder parts_;
+  Block block_;
+  std::uint32_t least_faces_ = 0;
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
   std::array<std::vector<Known>, 2> known_;  // per direction and surface
@@ -256,6 +266,23 @@ bool Builder::close_openings(double price) {
   return any;
 }
 
+// When little is left, or nothing else can be done.
+bool Builder::become_block() {
+  const std::uint32_t faces = block_.face_count();
+  if (!block_.exists() || mesh_.live_faces <= std::max(faces, options_.target_triangles)) return false;
+  if (block_.error_m() > options_.max_error_m || context_.cancelled()) return false;
+  report_.reached_block = block_.apply(mesh_, log_);
+  return report_.reached_block;
+}
+
+std::string Builder::why_no_block() const {
+  if (!block_.exists()) return block_.why_not();
+  if (block_.error_m() > options_.max_error_m) return "the block would exceed the largest error allowed";
+  if (mesh_.live_faces <= options_.target_triangles) return "the target was reached before";
+  if (mesh_.live_faces <= block_.face_count()) return "it has no more triangles than its block would have";
+  return "too few vertices are left for the corners of the block";
+}
+
 progressive::EditLog Builder::run(FacetShiftReport& report) {
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) {
     ++report_.surfaces;
@@ -287,6 +314,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     context_.report("facet shift",
                     1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
   }
+  if (!report_.reached_block) report_.reached_block = become_block() || is_block(mesh_);
+  if (!report_.reached_block) report_.block_sentence = why_no_block();
   if (mesh_.live_faces > options_.target_triangles && options_.target_triangles != 0) {
     report_.sentence = "nothing more can go without tearing the block";
   }
@@ -295,15 +324,18 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   return std::move(log_);
 }
 
-// The coarsest levels within the positional accuracy that CityGML 2.0 asks of its LoD3, LoD2 and LoD1.
-void name_levels(ModelData& data) {
+// The coarsest levels within the positional accuracy that CityGML 2.0 asks of its LoD3, LoD2 and LoD1; but a block is
+// what it calls LoD1.
+void name_levels(ModelData& data, bool reached_block) {
   const auto coarsest = [&](float error_m) {
     for (const ErrorStep& step : data.errors) {
       if (step.error_m <= error_m) return step.level;
     }
     return static_cast<Level>(data.shapes.size());
   };
-  data.named_levels = {{"lod3", coarsest(0.5F)}, {"lod2", coarsest(2.0F)}, {"lod1", coarsest(5.0F)}, {"block", 0}};
+  data.named_levels = {
+      {"lod3", coarsest(0.5F)}, {"lod2", coarsest(2.0F)}, {"lod1", reached_block ? 0 : coarsest(5.0F)}};
+  if (reached_block) data.named_levels.push_back({"block", 0});
 }
 
 }  // namespace
@@ -322,7 +354,7 @@ Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShift
   progressive::EditLog log = builder.run(result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
   ModelData data = progressive::record(source, std::move(log), "facet-shift");
-  facets::name_levels(data);
+  facets::name_levels(data, result.report.reached_block);
   auto model = ProgressiveModel::from_data(std::move(data));
   if (!model.ok()) return model.error();
   result.model = std::move(model).value();

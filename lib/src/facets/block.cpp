@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+// Based on: Li et al. 2019, section 2.1 (the overall shape of a building is that of its footprint and roof); the prism
+// is what CityGML 2.0 calls LoD1.
+#include "facets/block.h"
+
+#include <lodestone/polygon.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "facets/footprint.h"
+#include "facets/outline.h"
+#include "geometry/bvh.h"
+#include "mesh/sampling.h"
+#include "mesh/weld.h"
+
+namespace lodestone::facets {
+namespace {
+
+constexpr std::uint32_t most_corners = 16;
+constexpr std::uint32_t samples = 8192;    // of either surface, beside the corners
+constexpr double least_face_share = 1e-5;  // of the area: smaller faces are not needed to find the nearest
+constexpr double facing_cosine = 0.7;
+constexpr double upright_sine = 0.01;
+
+Mesh mesh_of(const std::vector<glm::vec3>& corners, const std::vector<VertexId>& indices) {
+  Mesh mesh;
+  mesh.materials.emplace_back();
+  mesh.vertices.positions = corners;
+  mesh.indices = indices;
+  return mesh;
+}
+
+// Of the faces that matter, which are few: distances to them are too large if anything.
+TriangleBvh coarse_tree(const Mesh& mesh, double area) {
+  std::vector<VertexId> indices;
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) {
+    if (0.5 * glm::length(area_vector(mesh, f)) < least_face_share * area) continue;
+    const auto at = mesh.indices.begin() + 3 * std::ptrdiff_t{f};
+    indices.insert(indices.end(), at, at + 3);
+  }
+  return TriangleBvh{mesh.vertices.positions, indices};
+}
+
+double farthest_m(const Mesh& mesh, const SurfaceSampler& sampler, const TriangleBvh& tree) {
+  double farthest = 0.0;
+  std::uint32_t hint = none;
+  for (const VertexId v : mesh.indices) {
+    const auto nearest = tree.nearest(glm::dvec3{mesh.vertices.positions[v]}, hint);
+    hint = nearest.slot;
+    farthest = std::max(farthest, nearest.squared_distance);
+  }
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    const auto nearest = tree.nearest(sampler.sample(i, samples, 1).position, hint);
+    hint = nearest.slot;
+    farthest = std::max(farthest, nearest.squared_distance);
+  }
+  return std::sqrt(farthest);
+}
+
+}  // namespace
+
+Block::Block(const FacetMesh& mesh) {
+  const Footprint footprint = find_footprint(*mesh.source, mesh.surfaces, most_corners);
+  sentence_ = footprint.sentence;
+  if (!sentence_.empty()) return;
+  const std::uint32_t n = footprint.corner_count();
+  std::vector<glm::dvec3> flat;
+  for (const double z : {footprint.low_m, footprint.high_m}) {
+    for (const glm::dvec2& c : footprint.corners) corners_.emplace_back(c.x, c.y, z);
+  }
+  for (const glm::dvec2& c : footprint.corners) flat.emplace_back(c.x, c.y, 0.0);
+  for (const auto& t : triangulate_polygon(flat, footprint.loop_ends)) {
+    triangles_.push_back({{t[0], t[2], t[1]}, 0});
+    triangles_.push_back({{n + t[0], n + t[1], n + t[2]}, 1});
+  }
+  std::uint32_t facet = 2;
+  std::uint32_t first = 0;
+  for (const std::uint32_t end : footprint.loop_ends) {
+    for (std::uint32_t i = first; i < end; ++i, ++facet) {
+      const std::uint32_t j = i + 1 == end ? first : i + 1;
+      triangles_.push_back({{i, j, n + j}, facet});
+      triangles_.push_back({{i, n + j, n + i}, facet});
+    }
+    first = end;
+  }
+  measure(*mesh.source);
+}
+
+void Block::measure(const Mesh& source) {
+  std::vector<VertexId> indices;
+  for (const Triangle& t : triangles_) indices.insert(indices.end(), t.corner.begin(), t.corner.end());
+  const Mesh prism = mesh_of(corners_, indices);
+  const SurfaceSampler of_source{source};
+  const SurfaceSampler of_prism{prism};
+  const double there_m = farthest_m(source, of_source, TriangleBvh{prism.vertices.positions, prism.indices});
+  const double back_m = farthest_m(prism, of_prism, coarse_tree(source, of_source.area()));
+  error_m_ = std::max(there_m, back_m);
+  if (std::isfinite(error_m_)) return;
+  triangles_.clear();
+  sentence_ = "its shape cannot be compared with a block";
+}
+
+// Finds for each face of the prism one that is there, and for each of its corners a vertex.
+class Block::Caster {
+ public:
+  Caster(const Block& block, const FacetMesh& mesh)
+      : block_(block), mesh_(mesh), faces_(block.triangles_.size(), none) {
+    for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+      if (mesh.faces[f].live) live_.push_back(f);
+    }
+    for (VertexId v = 0; v < mesh.uses.size(); ++v) {
+      if (mesh.uses[v] != 0) free_.push_back(v);
+    }
+  }
+
+  [[nodiscard]] bool run(Patch& patch) {
+    if (live_.size() <= block_.triangles_.size() || !name_wedges()) return false;
+    choose_faces();
+    choose_vertices();
+    write(patch);
+    return true;
+  }
+
+ private:
+  // The same corner of two facets has two vertices, unless these are rare and nothing tells the facets apart.
+  [[nodiscard]] bool name_wedges() {
+    const auto count = [&](bool shared) {
+      wedge_of_.clear();
+      for (const Triangle& t : block_.triangles_) {
+        for (const std::uint32_t c : t.corner) {
+          wedge_of_.emplace(std::pair{shared ? 0 : t.facet, c}, static_cast<std::uint32_t>(wedge_of_.size()));
+        }
+      }
+      shared_ = shared;
+      return wedge_of_.size();
+    };
+    return count(false) <= free_.size() || (mesh_.values.normals.empty() && count(true) <= free_.size());
+  }
+  [[nodiscard]] std::uint32_t wedge(const Triangle& t, std::size_t k) const {
+    return wedge_of_.at({shared_ ? 0 : t.facet, t.corner[k]});
+  }
+  [[nodiscard]] glm::dvec3 normal_of(const Triangle& t) const {
+    const auto at = [&](std::size_t k) { return glm::dvec3{block_.corners_[t.corner[k]]}; };
+    return glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0)));
+  }
+  [[nodiscard]] double area_of(FaceId f) const { return glm::length(mesh_.area_vector(mesh_.faces[f])); }
+
+  // How well a face can stand for one that faces along `normal`.
+  [[nodiscard]] double worth(FaceId f, const glm::dvec3& normal) const {
+    const glm::dvec3& own = mesh_.faces[f].normal;
+    const bool faces_there = glm::dot(own, normal) > facing_cosine;
+    const bool upright = std::abs(own.z) < facing_cosine;
+    const bool alike = upright == (std::abs(normal.z) < facing_cosine);
+    return area_of(f) * (faces_there ? 1.0 : alike ? 0.1 : 1e-3);
+  }
+
+  // The best material that is left on enough faces, `none` if there is none.
+  [[nodiscard]] MaterialId common_material(const glm::dvec3& normal, std::size_t least_faces) const {
+    std::vector<double> worths(mesh_.source->materials.size(), 0.0);
+    std::vector<std::size_t> counts(worths.size(), 0);
+    for (const FaceId f : live_) {
+      const MaterialId material = mesh_.source->face_material(f);
+      worths[material] += worth(f, normal);
+      ++counts[material];
+    }
+    MaterialId best = none;
+    for (MaterialId m = 0; m < worths.size(); ++m) {
+      if (counts[m] >= least_faces && (best == none || worths[m] > worths[best])) best = m;
+    }
+    return best;
+  }
+
+  // A facet is of one material if possible; facets of more triangles choose first.
+  void choose_faces() {
+    std::map<std::uint32_t, std::vector<std::size_t>> facets;
+    for (std::size_t i = 0; i < faces_.size(); ++i) facets[block_.triangles_[i].facet].push_back(i);
+    std::vector<std::vector<std::size_t>> order;
+    for (auto& [facet, triangles] : facets) order.push_back(std::move(triangles));
+    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    for (const std::vector<std::size_t>& triangles : order) {
+      const glm::dvec3 normal = normal_of(block_.triangles_[triangles[0]]);
+      const MaterialId material = common_material(normal, triangles.size());
+      const auto rank = [&](FaceId f) {
+        return std::pair{mesh_.source->face_material(f) == material, worth(f, normal)};
+      };
+      for (const std::size_t i : triangles) {
+        const auto best =
+            std::max_element(live_.begin(), live_.end(), [&](FaceId a, FaceId b) { return rank(a) < rank(b); });
+        faces_[i] = *best;
+        live_.erase(best);
+      }
+    }
+  }
+
+  // Vertices of the faces chosen for a facet, nearest first, or any others.
+  void choose_vertices() {
+    vertices_.assign(wedge_of_.size(), none);
+    const auto take_nearest = [&](const glm::dvec3& to, auto wanted) {
+      VertexId best = none;
+      double best_way = std::numeric_limits<double>::infinity();
+      for (const VertexId v : free_) {
+        const glm::dvec3 way = glm::dvec3{mesh_.values.positions[v]} - to;
+        if (!wanted(v) || glm::dot(way, way) >= best_way) continue;
+        best = v;
+        best_way = glm::dot(way, way);
+      }
+      if (best != none) std::erase(free_, best);
+      return best;
+    };
+    for (const bool own : {true, false}) {
+      for (std::size_t i = 0; i < faces_.size(); ++i) {
+        const Triangle& t = block_.triangles_[i];
+        const auto& has = mesh_.faces[faces_[i]].vertex;
+        for (std::size_t k = 0; k < 3; ++k) {
+          VertexId& vertex = vertices_[wedge(t, k)];
+          if (vertex != none) continue;
+          vertex = take_nearest(glm::dvec3{block_.corners_[t.corner[k]]},
+                                [&](VertexId v) { return !own || std::find(has.begin(), has.end(), v) != has.end(); });
+        }
+      }
+    }
+  }
+
+  void write(Patch& patch) const {
+    patch.gone = live_;
+    patch.surface = mesh_.faces[faces_[0]].surface;
+    patch.normal = normal_of(block_.triangles_[0]);
+    std::map<std::uint32_t, FaceId> map_of;  // per facet: the face whose texture goes on
+    std::vector<std::uint8_t> placed(vertices_.size(), 0);
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      const Triangle& t = block_.triangles_[i];
+      const Face& face = mesh_.faces[map_of.try_emplace(t.facet, faces_[i]).first->second];
+      Redrawn redrawn{.face = faces_[i]};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t w = wedge(t, k);
+        redrawn.point[k] = t.corner[k];
+        redrawn.vertex[k] = vertices_[w];
+        if (std::exchange(placed[w], std::uint8_t{1}) != 0) continue;
+        Placed p{.vertex = vertices_[w], .point = t.corner[k]};
+        if (!mesh_.values.normals.empty()) p.normal = glm::vec3{normal_of(t)};
+        if (!mesh_.values.uvs.empty()) {
+          p.uv = extrapolate_uv(mesh_, face, glm::dvec3{block_.corners_[t.corner[k]]});
+          if (!std::isfinite(p.uv.x) || !std::isfinite(p.uv.y)) p.uv = mesh_.values.uvs[vertices_[w]];
+        }
+        patch.placed.push_back(p);
+      }
+      patch.redrawn.push_back(redrawn);
+    }
+    for (const VertexId v : free_) {
+      const auto way = [&](const Placed& p) {
+        const glm::vec3 d = block_.corners_[p.point] - mesh_.values.positions[v];
+        return glm::dot(d, d);
+      };
+      const auto nearest = std::min_element(patch.placed.begin(), patch.placed.end(),
+                                            [&](const Placed& a, const Placed& b) { return way(a) < way(b); });
+      patch.merged.push_back({v, nearest->vertex});
+    }
+  }
+
+  const Block& block_;
+  const FacetMesh& mesh_;
+  std::vector<FaceId> live_, faces_;  // not chosen, and chosen per triangle
+  std::vector<VertexId> free_, vertices_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> wedge_of_;  // of facet and corner
+  bool shared_ = false;
+};
+
+bool Block::apply(FacetMesh& mesh, progressive::EditLog& log) const {
+  if (mesh.point_count() < corners_.size()) return false;
+  Patch patch;
+  if (!Caster{*this, mesh}.run(patch)) return false;
+  // Nothing else is left, so that any points may become the corners.
+  std::copy(corners_.begin(), corners_.end(), mesh.place.begin());
+  facets::apply(mesh, patch, error_m_, log);
+  return true;
+}
+
+bool is_block(const FacetMesh& mesh) {
+  std::vector<FaceId> live;
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+    if (!mesh.faces[f].live) continue;
+    live.push_back(f);
+    const glm::dvec3 n = mesh.area_vector(mesh.faces[f]);
+    const double slope = std::abs(n.z) / std::max(glm::length(n), 1e-30);
+    if (slope > upright_sine && slope < 1.0 - upright_sine) return false;
+  }
+  return !live.empty() && outline(mesh, live).empty();
+}
+
+}  // namespace lodestone::facets

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// The last level of a building: a closed prism over its footprint.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "facets/facet_mesh.h"
+#include "facets/patch.h"
+
+namespace lodestone::facets {
+
+class Block {
+ public:
+  // Precondition: nothing has changed in the mesh yet, the error is that from the source. O(faces).
+  explicit Block(const FacetMesh& mesh);
+
+  [[nodiscard]] bool exists() const noexcept { return !triangles_.empty(); }
+  [[nodiscard]] std::uint32_t face_count() const noexcept { return static_cast<std::uint32_t>(triangles_.size()); }
+  [[nodiscard]] double error_m() const noexcept { return error_m_; }
+  [[nodiscard]] const std::string& why_not() const noexcept { return sentence_; }
+
+  // All faces that are left become the prism, in one record. False, and nothing happens, if they or their vertices are
+  // too few.
+  [[nodiscard]] bool apply(FacetMesh& mesh, progressive::EditLog& log) const;
+
+ private:
+  struct Triangle {
+    std::array<std::uint32_t, 3> corner{};  // the first half of the corners is below, the second above
+    std::uint32_t facet = 0;                // 0 bottom, 1 top, then the sides
+  };
+  class Caster;
+  void measure(const Mesh& source);
+
+  std::vector<glm::vec3> corners_;
+  std::vector<Triangle> triangles_;  // largest first
+  double error_m_ = 0.0;
+  std::string sentence_;
+};
+
+// Whether the faces that are left are a closed prism as they are: nothing but upright and level faces without an open
+// side.
+[[nodiscard]] bool is_block(const FacetMesh& mesh);
+
+}  // namespace lodestone::facets

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+// Based on: Kada and McKinley 2009, "3D building reconstruction from LiDAR based on a cell decomposition approach"
+// (cells between the lines of the main walls; those that the building covers make up its footprint). Differs: lines
+// come from the planes of a detailed model, coverage from a raster of its faces seen from above.
+#include "facets/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace lodestone::facets {
+namespace {
+
+constexpr double vertical_sine = 0.0872;
+constexpr double least_wall_share = 0.15;   // of the area; less is no building
+constexpr double least_line_share = 0.03;   // of the walls' area
+constexpr double same_line_cosine = 0.996;  // 5 degrees
+constexpr double same_line_m = 0.6;
+constexpr double eaves_m = 1.2;   // a roof that reaches farther than this over the last wall stands on one not there
+constexpr double margin_m = 4.0;  // around everything: keeps what overhangs outside
+constexpr double least_agreement = 0.6;  // of footprint and coverage: intersection over union
+constexpr double least_loop_share = 0.03;
+constexpr int raster_cells = 192;  // along the longer side
+
+struct Line {
+  glm::dvec2 normal{0.0};
+  double offset_m = 0.0;
+  double weight = 0.0;
+
+  [[nodiscard]] double distance(const glm::dvec2& p) const { return glm::dot(normal, p) - offset_m; }
+};
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+// The highest face over each cell of the ground.
+class Raster {
+ public:
+  explicit Raster(const Mesh& mesh) {
+    const Box box = bounds(mesh);
+    low_ = {box.min.x, box.min.y};
+    const double extent = std::max(box.max.x - box.min.x, box.max.y - box.min.y);
+    cell_m_ = std::max(extent / raster_cells, 1e-6);
+    nx_ = static_cast<int>((box.max.x - box.min.x) / cell_m_) + 1;
+    ny_ = static_cast<int>((box.max.y - box.min.y) / cell_m_) + 1;
+    heights_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), empty_height);
+    for (FaceId f = 0; f < mesh.triangle_count(); ++f) draw(mesh, f);
+  }
+
+  // Calls visit(place, height) for all cells whose middle lies in the box; height is `empty_height` where nothing is.
+  template <class Visit>
+  void visit(const glm::dvec2& from, const glm::dvec2& to, Visit visit) const {
+    const glm::ivec2 first = cell_of(from);
+    const glm::ivec2 last = cell_of(to);
+    for (int y = std::max(first.y, 0); y <= std::min(last.y, ny_ - 1); ++y) {
+      for (int x = std::max(first.x, 0); x <= std::min(last.x, nx_ - 1); ++x) visit(middle(x, y), at(x, y));
+    }
+  }
+  template <class Visit>
+  void visit_all(Visit v) const {
+    visit(low_, middle(nx_, ny_), v);
+  }
+  [[nodiscard]] double cell_area_m2() const { return cell_m_ * cell_m_; }
+
+  static constexpr double empty_height = -1e30;
+
+ private:
+  [[nodiscard]] glm::dvec2 middle(int x, int y) const { return low_ + cell_m_ * (glm::dvec2{x, y} + 0.5); }
+  [[nodiscard]] glm::ivec2 cell_of(const glm::dvec2& p) const { return glm::ivec2{glm::floor((p - low_) / cell_m_)}; }
+  [[nodiscard]] double at(int x, int y) const {
+    return heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(x)];
+  }
+
+  void draw(const Mesh& mesh, FaceId f) {
+    std::array<glm::dvec3, 3> p{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = glm::dvec3{mesh.vertices.positions[mesh.indices[3 * std::size_t{f} + k]]};
+    }
+    const auto flat = [&](std::size_t k) { return glm::dvec2{p[k].x, p[k].y}; };
+    const double area = cross(flat(1) - flat(0), flat(2) - flat(0));
+    if (std::abs(area) < 1e-9) return;
+    const glm::ivec2 first = cell_of(glm::min(glm::min(flat(0), flat(1)), flat(2)));
+    const glm::ivec2 last = cell_of(glm::max(glm::max(flat(0), flat(1)), flat(2)));
+    for (int y = std::max(first.y, 0); y <= std::min(last.y, ny_ - 1); ++y) {
+      for (int x = std::max(first.x, 0); x <= std::min(last.x, nx_ - 1); ++x) {
+        const glm::dvec2 m = middle(x, y);
+        const double b = cross(m - flat(0), flat(2) - flat(0)) / area;
+        const double c = cross(flat(1) - flat(0), m - flat(0)) / area;
+        if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
+        double& height =
+            heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(x)];
+        height = std::max(height, p[0].z + b * (p[1].z - p[0].z) + c * (p[2].z - p[0].z));
+      }
+    }
+  }
+
+  glm::dvec2 low_{0.0};
+  double cell_m_ = 1.0;
+  int nx_ = 0, ny_ = 0;
+  std::vector<double> heights_;
+};
+
+// Walls that lie in one line are one; heaviest first. Empty if too little of the area is wall.
+std::vector<Line> wall_lines(const Mesh& mesh, const CharacteristicSurfaces& found) {
+  const auto count = found.surfaces.size();
+  std::vector<glm::dvec3> middles(count, glm::dvec3{0.0});
+  for (std::size_t c = 0; c < mesh.indices.size(); ++c) {
+    const std::uint32_t s = found.surface_of_face[c / 3];
+    if (s == none) continue;
+    middles[s] += glm::dvec3{mesh.vertices.positions[mesh.indices[c]]} / (3.0 * found.surfaces[s].face_count);
+  }
+  std::vector<std::uint32_t> walls;
+  double whole = 0.0;
+  double wall_area = 0.0;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    whole += found.surfaces[s].area_m2;
+    if (std::abs(found.surfaces[s].normal.z) >= vertical_sine) continue;
+    wall_area += found.surfaces[s].area_m2;
+    walls.push_back(s);
+  }
+  if (wall_area < least_wall_share * whole) return {};
+  std::stable_sort(walls.begin(), walls.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return found.surfaces[a].area_m2 > found.surfaces[b].area_m2;
+  });
+  std::vector<Line> lines;
+  for (const std::uint32_t s : walls) {
+    const CharacteristicSurface& surface = found.surfaces[s];
+    const glm::dvec2 normal = glm::normalize(glm::dvec2{surface.normal.x, surface.normal.y});
+    const glm::dvec2 middle{middles[s].x, middles[s].y};
+    const auto at = std::find_if(lines.begin(), lines.end(), [&](const Line& line) {
+      return std::abs(glm::dot(line.normal, normal)) > same_line_cosine &&
+             std::abs(line.distance(middle)) < same_line_m;
+    });
+    if (at != lines.end()) {
+      at->weight += surface.area_m2 / wall_area;
+    } else if (surface.area_m2 > 0.1 * least_line_share * wall_area) {
+      lines.push_back({normal, glm::dot(normal, middle), surface.area_m2 / wall_area});
+    }
+  }
+  std::erase_if(lines, [](const Line& line) { return line.weight < least_line_share; });
+  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.weight > b.weight; });
+  return lines;
+}
+
+// A rectangle cut by lines. Each line cuts all cells, so neighbours share whole edges.
+class Cells {
+ public:
+  Cells(const std::array<glm::dvec2, 4>& rectangle) : points_(rectangle.begin(), rectangle.end()) {
+    cells_.push_back({0, 1, 2, 3});
+  }
+
+  void cut(const Line& line) {
+    std::vector<double> side(points_.size());
+    for (std::size_t i = 0; i < side.size(); ++i) {
+      side[i] = line.distance(points_[i]);
+      if (std::abs(side[i]) < 1e-6) side[i] = 0.0;
+    }
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> met;
+    const auto meeting = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [at, added] = met.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points_.size()));
+      if (added) points_.push_back(points_[a] + side[a] / (side[a] - side[b]) * (points_[b] - points_[a]));
+      return at->second;
+    };
+    std::vector<std::vector<std::uint32_t>> after;
+    for (const auto& cell : cells_) {
+      std::array<std::vector<std::uint32_t>, 2> halves;
+      for (std::size_t i = 0; i < cell.size(); ++i) {
+        const std::uint32_t a = cell[i];
+        const std::uint32_t b = cell[(i + 1) % cell.size()];
+        if (side[a] >= 0.0) halves[0].push_back(a);
+        if (side[a] <= 0.0) halves[1].push_back(a);
+        if (side[a] * side[b] >= 0.0) continue;
+        const std::uint32_t m = meeting(a, b);
+        halves[0].push_back(m);
+        halves[1].push_back(m);
+      }
+      for (auto& half : halves) {
+        if (half.size() >= 3) after.push_back(std::move(half));
+      }
+    }
+    cells_ = std::move(after);
+  }
+
+  // The outlines of all cells that are covered, simple loops, the covered side to the left. Empty if two touch in a
+  // point.
+  [[nodiscard]] std::vector<std::vector<glm::dvec2>> covered_loops(const Raster& raster) const {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> edges;
+    for (const auto& cell : cells_) {
+      if (!covered(cell, raster)) continue;
+      for (std::size_t i = 0; i < cell.size(); ++i) edges[{cell[i], cell[(i + 1) % cell.size()]}] = true;
+    }
+    std::map<std::uint32_t, std::uint32_t> next;
+    for (const auto& [edge, used] : edges) {
+      if (edges.contains({edge.second, edge.first})) continue;
+      if (!next.emplace(edge.first, edge.second).second) return {};
+    }
+    std::vector<std::vector<glm::dvec2>> loops;
+    while (!next.empty()) {
+      std::vector<glm::dvec2> loop;
+      for (auto at = next.begin(); at != next.end();) {
+        loop.push_back(points_[at->first]);
+        const std::uint32_t to = at->second;
+        next.erase(at);
+        at = next.find(to);
+      }
+      loops.push_back(std::move(loop));
+    }
+    return loops;
+  }
+
+ private:
+  // At least half of it, asked of the raster's cells.
+  [[nodiscard]] bool covered(const std::vector<std::uint32_t>& cell, const Raster& raster) const {
+    glm::dvec2 low = points_[cell[0]];
+    glm::dvec2 high = low;
+    for (const std::uint32_t p : cell) {
+      low = glm::min(low, points_[p]);
+      high = glm::max(high, points_[p]);
+    }
+    int inside = 0;
+    int full = 0;
+    raster.visit(low, high, [&](const glm::dvec2& p, double height) {
+      for (std::size_t i = 0; i < cell.size(); ++i) {
+        const glm::dvec2 a = points_[cell[i]];
+        if (cross(points_[cell[(i + 1) % cell.size()]] - a, p - a) < 0.0) return;
+      }
+      ++inside;
+      full += height > Raster::empty_height ? 1 : 0;
+    });
+    return 2 * full > inside;
+  }
+
+  std::vector<glm::dvec2> points_;
+  std::vector<std::vector<std::uint32_t>> cells_;  // convex, turning left
+};
+
+double signed_area_m2(const std::vector<glm::dvec2>& loop) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) sum += cross(loop[i], loop[(i + 1) % loop.size()]);
+  return 0.5 * sum;
+}
+
+// Corners in the middle of a straight side go.
+void straighten(std::vector<glm::dvec2>& loop) {
+  for (std::size_t i = 0; i < loop.size() && loop.size() > 3;) {
+    const glm::dvec2 before = loop[i] - loop[(i + loop.size() - 1) % loop.size()];
+    const glm::dvec2 after = loop[(i + 1) % loop.size()] - loop[i];
+    if (std::abs(cross(before, after)) > 1e-6 * glm::length(before) * glm::length(after)) {
+      ++i;
+    } else {
+      loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;
+    }
+  }
+}
+
+// How far what is covered reaches along a direction.
+std::pair<double, double> reach_m(const Raster& raster, const glm::dvec2& along) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  raster.visit_all([&](const glm::dvec2& p, double height) {
+    if (height == Raster::empty_height) return;
+    low = std::min(low, glm::dot(along, p));
+    high = std::max(high, glm::dot(along, p));
+  });
+  return {low, high};
+}
+
+// Where the outermost wall line of a direction lies far inside of what is covered, there is a wall missing.
+void add_missing_walls(const Raster& raster, const glm::dvec2& along, std::vector<Line>& lines) {
+  const auto [low, high] = reach_m(raster, along);
+  for (const double end : {low, high}) {
+    const bool there = std::any_of(lines.begin(), lines.end(), [&](const Line& line) {
+      const double cosine = glm::dot(line.normal, along);
+      return std::abs(cosine) > same_line_cosine && std::abs(line.offset_m * cosine - end) < eaves_m;
+    });
+    if (!there) lines.push_back({along, end, 0.0});
+  }
+}
+
+bool contains(const Footprint& footprint, const glm::dvec2& p) {
+  bool inside = false;
+  for (std::size_t loop = 0, first = 0; loop < footprint.loop_ends.size(); first = footprint.loop_ends[loop++]) {
+    for (std::size_t i = first, end = footprint.loop_ends[loop]; i < end; ++i) {
+      const glm::dvec2 a = footprint.corners[i];
+      const glm::dvec2 b = footprint.corners[i + 1 == end ? first : i + 1];
+      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+// The largest loop and the holes in it; false if much lies elsewhere.
+bool take_loops(std::vector<std::vector<glm::dvec2>> loops, Footprint& footprint) {
+  std::erase_if(loops, [](const auto& loop) { return loop.size() < 3; });
+  for (auto& loop : loops) straighten(loop);
+  std::stable_sort(loops.begin(), loops.end(),
+                   [](const auto& a, const auto& b) { return signed_area_m2(a) > signed_area_m2(b); });
+  footprint.corners.clear();
+  footprint.loop_ends.clear();
+  if (loops.empty()) return false;
+  const double largest = signed_area_m2(loops.front());
+  for (const auto& loop : loops) {
+    const double area = signed_area_m2(loop);
+    if (std::abs(area) < least_loop_share * largest) continue;
+    if (area > 0.0 && !footprint.corners.empty()) return false;
+    footprint.corners.insert(footprint.corners.end(), loop.begin(), loop.end());
+    footprint.loop_ends.push_back(footprint.corner_count());
+  }
+  return true;
+}
+
+// Intersection over union of the footprint and what is covered; and the height that half of it reaches.
+double agreement(const Raster& raster, Footprint& footprint) {
+  double both = 0.0;
+  double any = 0.0;
+  std::vector<double> heights;
+  raster.visit_all([&](const glm::dvec2& p, double height) {
+    const bool full = height > Raster::empty_height;
+    const bool inside = contains(footprint, p);
+    both += full && inside ? 1.0 : 0.0;
+    any += full || inside ? 1.0 : 0.0;
+    if (full && inside) heights.push_back(height);
+  });
+  if (heights.empty()) return 0.0;
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  footprint.high_m = *middle;
+  return both / any;
+}
+
+}  // namespace
+
+Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surfaces, std::uint32_t most_corners) {
+  Footprint footprint;
+  std::vector<Line> lines = wall_lines(mesh, surfaces);
+  if (lines.empty()) {
+    footprint.sentence = "there are no walls to stand a block on";
+    return footprint;
+  }
+  const Raster raster{mesh};
+  const glm::dvec2 along = lines.front().normal;
+  const glm::dvec2 across{-along.y, along.x};
+  const auto [low_a, high_a] = reach_m(raster, along);
+  const auto [low_b, high_b] = reach_m(raster, across);
+  if (!(low_a < high_a) || !(low_b < high_b)) {
+    footprint.sentence = "nothing lies over the ground between the walls";
+    return footprint;
+  }
+  const std::array<double, 4> a{low_a - margin_m, high_a + margin_m, high_a + margin_m, low_a - margin_m};
+  const std::array<double, 4> b{low_b - margin_m, low_b - margin_m, high_b + margin_m, high_b + margin_m};
+  std::array<glm::dvec2, 4> rectangle{};
+  for (std::size_t i = 0; i < 4; ++i) rectangle[i] = a[i] * along + b[i] * across;
+  double best = 0.0;
+  // With fewer lines there are fewer corners; the ends of what is covered always make a rectangle.
+  for (std::size_t most_lines : {16U, 12U, 8U, 6U, 4U, 0U}) {
+    std::vector<Line> used{lines.begin(),
+                           lines.begin() + static_cast<std::ptrdiff_t>(std::min(most_lines, lines.size()))};
+    add_missing_walls(raster, along, used);
+    add_missing_walls(raster, across, used);
+    Cells cells{rectangle};
+    for (const Line& line : used) cells.cut(line);
+    Footprint found;
+    if (!take_loops(cells.covered_loops(raster), found) || found.corner_count() > most_corners) continue;
+    const double share = agreement(raster, found);
+    if (share <= best) continue;
+    best = share;
+    footprint = std::move(found);
+  }
+  if (best < least_agreement) {
+    footprint = {};
+    footprint.sentence = "what it covers of the ground is not one piece between its walls";
+    return footprint;
+  }
+  footprint.low_m = bounds(mesh).min.z;
+  return footprint;
+}
+
+}  // namespace lodestone::facets
