@@ -438,7 +438,9 @@ class Failures(Contract):
             self.assertEqual(built["method"], method)
 
     def test_levels_of_buildings_have_names(self):
-        self.json("build", self.house, "--method", "facet-shift", "-o", self.scratch / "a.lode")
+        built = self.json("build", self.house, "--method", "facet-shift", "-o", self.scratch / "a.lode")
+        self.assertTrue(built["facet_shift"]["reached_block"])
+        self.assertEqual([level["name"] for level in built["named_levels"]], ["lod3", "lod2", "lod1", "block"])
         triangles = [self.json("extract", self.scratch / "a.lode", "--level", name, "-o", self.scratch / "a.obj")["triangles"]
                      for name in ("lod3", "lod2", "lod1", "block")]
         self.assertEqual(triangles, sorted(triangles, reverse=True))

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "facets/footprint.h"
@@ -19,11 +20,16 @@
 namespace lodestone::facets {
 namespace {
 
-constexpr std::uint32_t most_corners = 16;
+constexpr std::uint32_t most_corners = 8;
 constexpr std::uint32_t samples = 8192;    // of either surface, beside the corners
 constexpr double least_face_share = 1e-5;  // of the area: smaller faces are not needed to find the nearest
 constexpr double facing_cosine = 0.7;
 constexpr double upright_sine = 0.01;
+constexpr double least_fabric_share = 0.15;  // of the area of all walls, or of all roofs
+constexpr std::uint32_t spare_faces = 2;     // one record may take as many
+
+// What a face of the material counts: glass only where there is nothing else.
+double see_through(const Mesh& mesh, MaterialId m) { return mesh.materials[m].transparent() ? 1e-6 : 1.0; }
 
 Mesh mesh_of(const std::vector<glm::vec3>& corners, const std::vector<VertexId>& indices) {
   Mesh mesh;
@@ -87,6 +93,46 @@ Block::Block(const FacetMesh& mesh) {
     first = end;
   }
   measure(*mesh.source);
+  choose_materials(mesh);
+}
+
+// No glass.
+void Block::choose_materials(const FacetMesh& mesh) {
+  std::vector<double> walls(mesh.source->materials.size(), 0.0);
+  std::vector<double> roofs(walls.size(), 0.0);
+  for (const Face& face : mesh.faces) {
+    if (!face.live) continue;
+    const MaterialId material = mesh.source->face_material(static_cast<FaceId>(&face - mesh.faces.data()));
+    const double area = glm::length(mesh.area_vector(face)) * see_through(*mesh.source, material);
+    if (face.normal.z < 1.0 - facing_cosine) {
+      walls[material] += area * (1.0 - std::abs(face.normal.z));
+    } else {
+      roofs[material] += area;
+    }
+  }
+  const auto choose = [&](const std::vector<double>& areas, Fabric& fabric) {
+    const double whole = std::accumulate(areas.begin(), areas.end(), 0.0);
+    for (const double area : areas) fabric.has.push_back(area >= least_fabric_share * whole ? 1 : 0);
+    if (fabric.left(mesh) < fabric.least_faces + spare_faces) fabric.least_faces = 0;
+  };
+  for (const Triangle& t : triangles_) {
+    walls_.least_faces += t.facet > 1 ? 1 : 0;
+    roofs_.least_faces += t.facet == 1 ? 1 : 0;
+  }
+  choose(walls, walls_);
+  choose(roofs, roofs_);
+  if (walls_.has == roofs_.has) walls_.least_faces += roofs_.least_faces;
+}
+
+std::uint32_t Block::Fabric::left(const FacetMesh& mesh) const noexcept {
+  std::uint32_t count = 0;
+  for (MaterialId m = 0; m < has.size(); ++m) count += has[m] != 0 ? mesh.live_of_material[m] : 0;
+  return count;
+}
+
+bool Block::must_come(const FacetMesh& mesh) const noexcept {
+  return exists() && (mesh.live_faces <= face_count() + spare_faces || walls_.left(mesh) < walls_.least_faces ||
+                      roofs_.left(mesh) < roofs_.least_faces);
 }
 
 void Block::measure(const Mesh& source) {
@@ -157,32 +203,32 @@ class Block::Caster {
     return area_of(f) * (faces_there ? 1.0 : alike ? 0.1 : 1e-3);
   }
 
-  // The best material that is left on enough faces, `none` if there is none.
-  [[nodiscard]] MaterialId common_material(const glm::dvec3& normal, std::size_t least_faces) const {
+  // The best material for a facet that is left on enough faces, `none` if there is none.
+  [[nodiscard]] MaterialId material_of(std::uint32_t facet, const glm::dvec3& normal, std::size_t least_faces) const {
     std::vector<double> worths(mesh_.source->materials.size(), 0.0);
     std::vector<std::size_t> counts(worths.size(), 0);
     for (const FaceId f : live_) {
       const MaterialId material = mesh_.source->face_material(f);
-      worths[material] += worth(f, normal);
+      worths[material] += worth(f, normal) * see_through(*mesh_.source, material);
       ++counts[material];
     }
+    const Fabric& fabric = facet > 1 ? block_.walls_ : block_.roofs_;
     MaterialId best = none;
     for (MaterialId m = 0; m < worths.size(); ++m) {
+      if (facet != 0 && fabric.has[m] != 0) worths[m] *= 1e6;
       if (counts[m] >= least_faces && (best == none || worths[m] > worths[best])) best = m;
     }
     return best;
   }
 
-  // A facet is of one material if possible; facets of more triangles choose first.
+  // A facet is of one material if possible. The bottom chooses last: it is seldom seen.
   void choose_faces() {
     std::map<std::uint32_t, std::vector<std::size_t>> facets;
     for (std::size_t i = 0; i < faces_.size(); ++i) facets[block_.triangles_[i].facet].push_back(i);
-    std::vector<std::vector<std::size_t>> order;
-    for (auto& [facet, triangles] : facets) order.push_back(std::move(triangles));
-    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-    for (const std::vector<std::size_t>& triangles : order) {
+    for (auto at = facets.rbegin(); at != facets.rend(); ++at) {
+      const auto& [facet, triangles] = *at;
       const glm::dvec3 normal = normal_of(block_.triangles_[triangles[0]]);
-      const MaterialId material = common_material(normal, triangles.size());
+      const MaterialId material = material_of(facet, normal, triangles.size());
       const auto rank = [&](FaceId f) {
         return std::pair{mesh_.source->face_material(f) == material, worth(f, normal)};
       };

@@ -20,6 +20,9 @@ class Block {
   [[nodiscard]] double error_m() const noexcept { return error_m_; }
   [[nodiscard]] const std::string& why_not() const noexcept { return sentence_; }
 
+  // Whether it is time: with fewer faces, or fewer that look like walls or roofs, it could not be made any more.
+  [[nodiscard]] bool must_come(const FacetMesh& mesh) const noexcept;
+
   // All faces that are left become the prism, in one record. False, and nothing happens, if they or their vertices are
   // too few.
   [[nodiscard]] bool apply(FacetMesh& mesh, progressive::EditLog& log) const;
@@ -31,9 +34,17 @@ class Block {
   };
   class Caster;
   void measure(const Mesh& source);
+  void choose_materials(const FacetMesh& mesh);
 
   std::vector<glm::vec3> corners_;
   std::vector<Triangle> triangles_;  // largest first
+  // What walls, and what roofs are made of to a good part, and how many faces of that must be left.
+  struct Fabric {
+    std::vector<std::uint8_t> has;  // per material
+    std::uint32_t least_faces = 0;
+    [[nodiscard]] std::uint32_t left(const FacetMesh& mesh) const noexcept;
+  };
+  Fabric walls_, roofs_;
   double error_m_ = 0.0;
   std::string sentence_;
 };

@@ -27,11 +27,10 @@ namespace {
 
 constexpr double first_price = 1e-10;  // m^4 a face
 constexpr double price_step = 4.0;
-constexpr double last_share = 1e-4;  // of (area * diagonal^2): beyond it the block itself would go
+constexpr double last_share = 1e-2;  // of (area * diagonal^2): beyond it the block itself would go
 constexpr std::uint32_t rounds_per_price = 4;
 constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
 constexpr std::size_t few_neighbours = 24;    // with more it is looked at again only when the others are done
-constexpr double spare_ratio = 1.5;           // faces left for the block to choose from, over those it needs
 constexpr double most_gone = 4.0;             // faces that a slide takes; a few take more
 
 class Builder {
@@ -44,10 +43,7 @@ class Builder {
         moved_(mesh_),
         planner_(mesh_),
         parts_(mesh_),
-        block_(mesh_) {
-    // The block is made of what is left: there must be some to choose from.
-    least_faces_ = std::max(options.target_triangles, static_cast<std::uint32_t>(spare_ratio * block_.face_count()));
-  }
+        block_(mesh_) {}
 
   progressive::EditLog run(FacetShiftReport& report);
 
@@ -77,7 +73,9 @@ class Builder {
   bool offer_later();
   bool become_block();
   [[nodiscard]] std::string why_no_block() const;
-  [[nodiscard]] bool done() const { return mesh_.live_faces <= least_faces_ || context_.cancelled(); }
+  [[nodiscard]] bool done() const {
+    return mesh_.live_faces <= options_.target_triangles || block_.must_come(mesh_) || context_.cancelled();
+  }
 
   const FacetShiftOptions& options_;
   const Context& context_;
@@ -88,7 +86,6 @@ class Builder {
   Planner planner_;
   PartFinder parts_;
   Block block_;
-  std::uint32_t least_faces_ = 0;
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
   std::array<std::vector<Known>, 2> known_;  // per direction and surface

@@ -135,6 +135,7 @@ class Editor {
     Face& face = mesh_.faces[f];
     face.live = false;
     --mesh_.live_faces;
+    --mesh_.live_of_material[mesh_.source->face_material(f)];
     log_.remove_face(f);
     for (const VertexId v : face.vertex) {
       --mesh_.uses[v];
@@ -291,6 +292,7 @@ FacetMesh make_facet_mesh(const Mesh& source, const SurfaceTolerance& tolerance,
   mesh.uses.assign(source.vertex_count(), 0);
   mesh.faces.resize(source.triangle_count());
   mesh.material_area_m2.assign(source.materials.size(), 0.0);
+  mesh.live_of_material.assign(source.materials.size(), 0);
   for (FaceId f = 0; f < source.triangle_count(); ++f) {
     Face& face = mesh.faces[f];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -305,6 +307,7 @@ FacetMesh make_facet_mesh(const Mesh& source, const SurfaceTolerance& tolerance,
     face.live = true;
     mesh.material_area_m2[source.face_material(f)] += 0.5 * glm::length(mesh.area_vector(face));
     ++mesh.live_faces;
+    ++mesh.live_of_material[source.face_material(f)];
     face.normal = glm::normalize(mesh.area_vector(face));
     mesh.surface_faces[face.surface].push_back(f);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -326,6 +329,7 @@ void vanish(FacetMesh& mesh, std::span<const FaceId> faces, double error_m, prog
     Face& face = mesh.faces[f];
     face.live = false;
     --mesh.live_faces;
+    --mesh.live_of_material[mesh.source->face_material(f)];
     log.remove_face(f);
     for (std::size_t k = 0; k < 3; ++k) {
       std::erase(mesh.faces_of[face.point[k]], f);

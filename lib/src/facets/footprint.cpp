@@ -21,6 +21,7 @@ constexpr double same_line_m = 0.6;
 constexpr double eaves_m = 1.2;   // a roof that reaches farther than this over the last wall stands on one not there
 constexpr double margin_m = 4.0;  // around everything: keeps what overhangs outside
 constexpr double least_agreement = 0.6;  // of footprint and coverage: intersection over union
+constexpr double corner_price = 0.015;   // of agreement that a corner more must bring
 constexpr double least_loop_share = 0.03;
 constexpr int raster_cells = 192;  // along the longer side
 
@@ -352,7 +353,7 @@ Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surface
   const std::array<double, 4> b{low_b - margin_m, low_b - margin_m, high_b + margin_m, high_b + margin_m};
   std::array<glm::dvec2, 4> rectangle{};
   for (std::size_t i = 0; i < 4; ++i) rectangle[i] = a[i] * along + b[i] * across;
-  double best = 0.0;
+  double best = -std::numeric_limits<double>::infinity();
   // With fewer lines there are fewer corners; the ends of what is covered always make a rectangle.
   for (std::size_t most_lines : {16U, 12U, 8U, 6U, 4U, 0U}) {
     std::vector<Line> used{lines.begin(),
@@ -364,12 +365,12 @@ Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surface
     Footprint found;
     if (!take_loops(cells.covered_loops(raster), found) || found.corner_count() > most_corners) continue;
     const double share = agreement(raster, found);
-    if (share <= best) continue;
-    best = share;
+    const double worth = share - corner_price * found.corner_count();
+    if (share < least_agreement || worth <= best) continue;
+    best = worth;
     footprint = std::move(found);
   }
-  if (best < least_agreement) {
-    footprint = {};
+  if (footprint.corners.empty()) {
     footprint.sentence = "what it covers of the ground is not one piece between its walls";
     return footprint;
   }

@@ -45,6 +45,7 @@ class Painter {
     Face& face = mesh_.faces[f];
     face.live = false;
     --mesh_.live_faces;
+    --mesh_.live_of_material[mesh_.source->face_material(f)];
     log_.remove_face(f);
     for (const VertexId v : face.vertex) drop(v);
   }

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "blocks.h"
 #include "data.h"
 
 namespace lodestone {
@@ -25,9 +26,9 @@ std::vector<std::filesystem::path> building_files(const std::filesystem::path& r
 
 TEST_CASE("all real buildings build exactly, and the richer ones keep their planes and their shape") {
   LODESTONE_REQUIRE_DATA(root);
-  constexpr std::array<double, 4> ratios{0.5, 0.2, 0.1, 0.05};
-  std::array<double, 4> deviation_deg{};
-  std::array<double, 4> rms_ppm{};
+  constexpr std::array<double, 5> ratios{0.5, 0.2, 0.1, 0.05, 0.02};
+  std::array<double, 5> deviation_deg{};
+  std::array<double, 5> rms_ppm{};
   std::uint32_t rich = 0;
   for (const auto& file : building_files(root)) {
     CAPTURE(file.string());
@@ -40,6 +41,8 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
     CHECK(report.fault.empty());
     CHECK((report.exact && report.monotone && report.in_use_consistent));
     CHECK(compare_with_source(*built->model, source) == "");
+    CHECK(built->report.reached_block);
+    test::check_block(built->model->extract(0));
     if (source.triangle_count() < 1000) continue;
     ++rich;
     for (std::size_t i = 0; i < ratios.size(); ++i) {
@@ -54,8 +57,8 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
     }
   }
   REQUIRE(rich == 30);
-  constexpr std::array<double, 4> most_deg{0.1, 0.12, 0.1, 0.3};
-  constexpr std::array<double, 4> most_ppm{150.0, 300.0, 520.0, 1250.0};
+  constexpr std::array<double, 5> most_deg{0.1, 0.12, 0.1, 0.3, 1.0};
+  constexpr std::array<double, 5> most_ppm{150.0, 300.0, 520.0, 1250.0, 3600.0};
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     CAPTURE(ratios[i]);
     CHECK(deviation_deg[i] / rich < most_deg[i]);

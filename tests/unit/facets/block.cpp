@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include <lodestone/facet_shift.h>
+#include <lodestone/generate.h>
+#include <lodestone/metrics.h>
+#include <lodestone/polygon.h>
+
+#include <catch2/catch.hpp>
+
+#include "blocks.h"
+#include "shapes.h"
+
+namespace lodestone {
+namespace {
+
+// Adds a closed prism over a polygon that turns left.
+void add_prism(Mesh& mesh, const std::vector<glm::vec2>& corners, float low, float high) {
+  const VertexId first = mesh.vertex_count();
+  const auto n = static_cast<std::uint32_t>(corners.size());
+  std::vector<glm::dvec3> flat;
+  for (const float z : {low, high}) {
+    for (const glm::vec2& c : corners) mesh.vertices.positions.push_back({c.x, c.y, z});
+  }
+  for (const glm::vec2& c : corners) flat.emplace_back(c.x, c.y, 0.0);
+  const auto add = [&](VertexId a, VertexId b, VertexId c) {
+    mesh.indices.insert(mesh.indices.end(), {first + a, first + b, first + c});
+  };
+  for (const auto& t : triangulate_polygon(flat, std::vector<std::uint32_t>{n})) {
+    add(t[0], t[2], t[1]);
+    add(n + t[0], n + t[1], n + t[2]);
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    add(i, j, n + j);
+    add(i, n + j, n + i);
+  }
+}
+
+const std::vector<glm::vec2> l_shape{{0, 0}, {20, 0}, {20, 8}, {8, 8}, {8, 16}, {0, 16}};
+
+TEST_CASE("the block stands on the outline of the walls, as high as half of the roof") {
+  Mesh mesh;
+  mesh.materials.emplace_back();
+  add_prism(mesh, l_shape, 0.0F, 7.0F);
+  add_prism(mesh, {{2, 2}, {3, 2}, {3, 3}, {2, 3}}, 7.0F, 9.0F);            // a chimney
+  add_prism(mesh, {{20.5F, 1}, {21, 1}, {21, 7}, {20.5F, 7}}, 3.0F, 4.0F);  // a balcony
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  CHECK(compare_with_source(*built->model, mesh) == "");
+  CHECK(built->report.reached_block);
+  const Mesh block = built->model->extract(0);
+  CHECK(block.triangle_count() == 20);
+  test::check_block(block);
+  const Box box = bounds(block);
+  CHECK(glm::length(box.min - glm::dvec3{0, 0, 0}) < 1e-5);
+  CHECK(glm::length(box.max - glm::dvec3{20, 16, 7}) < 1e-5);
+  // The chimney rises that far over the roof.
+  CHECK(built->model->error_m(0) >= 2.0);
+  for (const char* name : {"lod1", "block"}) CHECK(built->model->level_of_name(name).value() == 0);
+}
+
+TEST_CASE("houses of every roof end as a block, told by name, within the claimed error") {
+  for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
+    CAPTURE(static_cast<int>(roof));
+    HouseOptions options;
+    options.triangles = 4000;
+    options.roof = roof;
+    options.pixels = Pixels::Skip;
+    const auto house = generate_house(options);
+    REQUIRE(house.ok());
+    const auto built = build_by_facet_shift(*house);
+    REQUIRE(built.ok());
+    CHECK(built->report.reached_block);
+    CHECK(built->report.block_sentence.empty());
+    const ProgressiveModel& model = *built->model;
+    const Mesh block = model.extract(model.level_of_name("block").value());
+    test::check_block(block);
+    const auto distance = compare(*house, block, {.samples = 5000});
+    REQUIRE(distance.ok());
+    CHECK(distance->hausdorff_m <= model.error_m(0) + 1e-3);
+    CHECK(model.level_of_name("lod3").value() >= model.level_of_name("lod2").value());
+    CHECK(model.error_m(model.level_of_name("lod2").value()) <= 2.0);
+  }
+}
+
+TEST_CASE("what is no building says so and has no block") {
+  const auto built = build_by_facet_shift(test::sphere(40, 50));
+  REQUIRE(built.ok());
+  CHECK_FALSE(built->report.reached_block);
+  CHECK(built->report.block_sentence.find("walls") != std::string::npos);
+  CHECK_FALSE(built->model->level_of_name("block").ok());
+  const auto stopped = build_by_facet_shift(test::cube(), {.target_triangles = 12});
+  REQUIRE(stopped.ok());
+  CHECK(stopped->report.reached_block);  // a cube is one from the start
+}
+
+}  // namespace
+}  // namespace lodestone
