@@ -8,6 +8,7 @@ export const grid = { west: 4, south: 42, columns: 480, rows: 360 };
 const first = { i: Math.ceil((grid.west + 180) / step), j: Math.ceil((grid.south + 90) / step) };
 export const longitude = (i) => (first.i + i) * step - 180;
 export const latitude = (j) => (first.j + j) * step - 90;
+export const post = (east, north) => [(east + 180) / step - first.i, (north + 90) / step - first.j];  // may lie between posts
 export function height(i, j) {
   const a = longitude(i) * Math.PI / 180, b = latitude(j) * Math.PI / 180;
   let sum = 600;

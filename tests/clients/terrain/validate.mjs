@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // gltf-validator over every glb of a tileset, and its volumes: node validate.mjs NODE_MODULES TILESET
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import path from 'node:path';
+import { faults_of } from '../support/validate.mjs';
 
 const [modules, folder] = process.argv.slice(2);
-const validator = createRequire(path.join(modules, 'here.js'))('gltf-validator');
 const faults = [];
 let count = 0;
 const inside = (a, b) => a[0] >= b[0] - 1e-12 && a[1] >= b[1] - 1e-12 && a[2] <= b[2] + 1e-12 && a[3] <= b[3] + 1e-12 &&
@@ -15,9 +14,7 @@ async function look(tile, parent) {
   if (parent && !inside(region, parent.boundingVolume.region)) faults.push(`${tile.content?.uri} is not inside its parent`);
   if (parent && tile.geometricError > parent.geometricError) faults.push(`${tile.content?.uri} has a larger error than its parent`);
   if (tile.content) {
-    const bytes = new Uint8Array(readFileSync(path.join(folder, tile.content.uri)));
-    const report = await validator.validateBytes(bytes, { maxIssues: 20 });
-    if (report.issues.numErrors + report.issues.numWarnings > 0) faults.push(`${tile.content.uri}: ${JSON.stringify(report.issues.messages)}`);
+    faults.push(...await faults_of(modules, path.join(folder, tile.content.uri)));
     ++count;
   }
   for (const child of tile.children ?? []) await look(child, tile);
