@@ -19,7 +19,7 @@ namespace lodestone {
 namespace gis {
 namespace {
 
-constexpr int max_depth = 64;  // of nesting, xlinks included: also what ends a circle of references
+constexpr int max_depth = 64;  // of nesting, xlinks included
 
 // N of a property named lodNGeometry, lodNMultiSurface, lodNSolid, lodNImplicitRepresentation, ...; else -1.
 int lod_of(std::string_view property) noexcept {
@@ -38,7 +38,10 @@ struct NodeHash {
 class CityGmlReader {
  public:
   CityGmlReader(const pugi::xml_node& root, const Input& input, const ReadOptions& options)
-      : root_(root), builder_(input, options), appearances_(root, builder_.warnings()) {
+      : root_(root),
+        builder_(input, options),
+        appearances_(root, builder_.warnings()),
+        max_visits_(10'000'000 + input.size() / 32) {
     index_ids(root, 0);
   }
 
@@ -82,9 +85,8 @@ class CityGmlReader {
 
   // References may multiply (two links to a group that holds two links, and so on): an end to that.
   bool may_visit() {
-    constexpr std::uint64_t max_visits = 50'000'000;
-    if (++visits_ == max_visits) builder_.warnings().add("references multiply without end; the rest was left out");
-    return visits_ < max_visits;
+    if (++visits_ == max_visits_) builder_.warnings().add("references multiply without end; the rest was left out");
+    return visits_ < max_visits_;
   }
 
   static bool is_geometry_property(std::string_view name) noexcept { return lod_of(name) >= 0 || name == "tin"; }
@@ -136,6 +138,11 @@ class CityGmlReader {
 
   void read_geometry(const pugi::xml_node& holder, Placement place, int depth) {
     if (depth > max_depth || builder_.full() || !may_visit()) return;
+    if (std::find(open_.begin(), open_.end(), holder) != open_.end()) {
+      builder_.warnings().add("references go round in a circle; they were followed once");
+      return;
+    }
+    open_.push_back(holder);
     for (const pugi::xml_node& link : holder.children()) {
       const pugi::xml_node node = link.attribute("xlink:href") ? resolve(link) : link;
       if (!node) continue;
@@ -153,6 +160,7 @@ class CityGmlReader {
       }
     }
     if (holder.attribute("xlink:href")) read_linked(holder, place, depth);
+    open_.pop_back();
   }
 
   // A property without content that names a geometry elsewhere: <surfaceMember xlink:href="#id"/>.
@@ -257,7 +265,9 @@ class CityGmlReader {
   std::unordered_set<pugi::xml_node, NodeHash> seen_;
   glm::dvec3 reference_{0.0};
   bool in_template_ = false;
+  std::vector<pugi::xml_node> open_;  // geometries being read, from the outermost
   std::uint64_t visits_ = 0;
+  std::uint64_t max_visits_;
 };
 
 }  // namespace

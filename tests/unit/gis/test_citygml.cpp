@@ -151,12 +151,23 @@ TEST_CASE("CityGML: broken files are refused in one line or read with warnings, 
   const auto loaded = read_citygml(input_of(nan, "a.gml"), {}, {});
   REQUIRE(loaded.ok());
   CHECK(warned(loaded.warnings(), "finite"));
-  // A circle of references, and references that multiply.
+  // References that multiply, and a circle of them.
+  std::string many = square;
+  for (int i = 0; i < 40; ++i) {
+    const std::string next = "<gml:surfaceMember xlink:href=\"#c" + std::to_string(i + 1) + "\"/>";
+    many += "<gml:surfaceMember><gml:CompositeSurface gml:id=\"c" + std::to_string(i) + "\">" + next + next +
+            "</gml:CompositeSurface></gml:surfaceMember>";
+  }
+  const auto enough = read_citygml(input_of(building(wall("3", many)), "a.gml"), {}, {});
+  REQUIRE(enough.ok());
+  CHECK(warned(enough.warnings(), "multiply"));
   std::string circle = building(wall(
       "3", square +
                "<gml:surfaceMember><gml:CompositeSurface gml:id=\"c\"><gml:surfaceMember "
                "xlink:href=\"#c\"/><gml:surfaceMember xlink:href=\"#c\"/></gml:CompositeSurface></gml:surfaceMember>"));
-  CHECK(read_citygml(input_of(circle, "a.gml"), {}, {}).ok());
+  const auto once = read_citygml(input_of(circle, "a.gml"), {}, {});
+  REQUIRE(once.ok());
+  CHECK(warned(once.warnings(), "circle"));
 }
 
 TEST_CASE("CityGML: reference systems in every usual spelling become EPSG codes") {
