@@ -69,7 +69,8 @@ Curve steps_of(const SwitchStudy& study, const SwitchPlan& plan, const glm::u8ve
   return curve;
 }
 
-// Figure 14, with the continuous model below: the coarsest level that equation 17 allows at every distance.
+// Figure 14, with the continuous model: the coarsest level that equation 17 allows at every distance, and what was
+// measured to be needed.
 render::Plot triangle_plot(const SwitchStudy& study, const ProgressiveModel& model) {
   render::Plot plot{.title = {},
                     .x_title = "distance, m",
@@ -82,13 +83,16 @@ render::Plot triangle_plot(const SwitchStudy& study, const ProgressiveModel& mod
   }
   plot.curves.push_back(steps_of(study, study.design, render::curve_color(0)));
   plot.curves.push_back(steps_of(study, study.measured, glm::u8vec3{0}));
-  Curve continuous{"continuous", Curve::Style::Line, render::curve_color(1), {}};
+  Curve continuous{"continuous, half a pixel", Curve::Style::Line, render::curve_color(1), {}};
   for (int i = 0; i <= curve_steps; ++i) {
     const double distance_m = study.first_m * std::pow(study.last_m / study.first_m, double(i) / curve_steps);
     const Level level = model.level_of_error(imperceptible_error_m(distance_m, study.focal_px));
     continuous.points.emplace_back(distance_m, model.info(level).triangles);
   }
   plot.curves.push_back(std::move(continuous));
+  Curve needed{"continuous, as needed", Curve::Style::Dots, render::curve_color(1), {}};
+  for (const render::NeededCheck& n : study.needed) needed.points.emplace_back(n.check.distance_m, n.triangles);
+  if (!needed.points.empty()) plot.curves.push_back(std::move(needed));
   return plot;
 }
 
