@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Tables 2 and 3 and Figures 13 and 16 of Ao et al. 2025 on a mesh at hand.
 //
-//     bench_outcrop build MESH FOLDER RATIO [THREADS]   processor seconds, memory and bytes of a pyramid (0 =
-//     automatic) bench_outcrop load MESH FOLDER                    first picture, and ten distances: monolith beside
-//     pyramid bench_outcrop error MESH                          error over simplification, beside libmeshoptimizer
+//     bench_outcrop build MESH FOLDER RATIO [THREADS]   processor seconds, memory, bytes of a pyramid (0 = automatic)
+//     bench_outcrop first FOLDER                        the first picture
+//     bench_outcrop load MESH FOLDER                    ten distances: monolith beside pyramid
+//     bench_outcrop error MESH                          error over simplification, beside libmeshoptimizer
 //
 // One JSON object per line.
 #include <meshoptimizer.h>
@@ -14,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string>
 
 #include <lodestone/edge_collapse.h>
@@ -22,7 +24,8 @@
 #include <lodestone/tile_loader.h>
 #include <lodestone/tileset_writer.h>
 
-#include "viewer/headless/headless.h"
+#include "viewer/headless/stage.h"
+#include "viewer/render/tile_scene.h"
 
 namespace {
 
@@ -42,6 +45,16 @@ double peak_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Memory of the process's own; the rest of the peak are pages of libraries (software OpenGL brings 74 MB of them).
+double private_mb() {
+  std::ifstream status{"/proc/self/status"};
+  for (std::string word; status >> word;) {
+    double kb = 0.0;
+    if (word == "RssAnon:" && status >> kb) return kb / 1024.0;
+  }
+  return 0.0;
 }
 
 Mesh read(const char* file, LoadTextures textures) {
@@ -75,15 +88,36 @@ int build(const char* file, const char* folder, double ratio, unsigned threads) 
   return 0;
 }
 
-// Ten distances between nearly touching and all of it small, seen from the south.
-int load(const char* file, const char* folder) {
-  double start = wall_seconds();
+// From nothing to a picture of the whole, as a program that is told to open a tileset: the root tile alone, drawn once.
+int first(const char* folder) {
+  const double start = wall_seconds();
+  const double processor = processor_seconds();
   const auto pyramid = TilePyramid::open(std::filesystem::path{folder} / "tileset.json");
   if (!pyramid) return 2;
-  TilePager pager{*pyramid};
-  const Mesh* root = pager.content(0);
-  if (root == nullptr || !render::render_mesh(*root, {.width_px = 1280, .height_px = 720, .supersample = 1})) return 2;
-  std::printf("{\"first_picture_seconds\": %.2f, \"peak_megabytes\": %.0f}\n", wall_seconds() - start, peak_mb());
+  auto stage = render::Stage::create();
+  if (!stage) return 2;
+  render::TileScene scene{(*stage)->gl(), *pyramid};
+  render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
+  options.camera.yaw_rad = scene.yaw_rad();
+  const auto view = render::view_of(options, (*pyramid)->bounds(), (*pyramid)->origin(), {});
+  const auto frame = render::Frame::create((*stage)->gl(), render::frame_size(options));
+  if (!view || !frame) return 2;
+  const double ready = wall_seconds();
+  scene.update(*view, 0.0);
+  (*stage)->renderer().draw(*frame, *view, (*pyramid)->bounds(), scene.items(), options.look);
+  const Image picture = (*stage)->presenter().read(*frame);
+  std::printf(
+      "{\"first_picture_seconds\": %.2f, \"processor_seconds\": %.2f, \"of_that_before_drawing\": %.2f, "
+      "\"peak_megabytes\": %.0f, \"private_megabytes\": %.0f, \"triangles\": %u}\n",
+      wall_seconds() - start, processor_seconds() - processor, ready - start, peak_mb(), private_mb(),
+      scene.triangle_count());
+  return picture.empty() ? 2 : 0;
+}
+
+// Ten distances between nearly touching and all of it small, seen from the south.
+int load(const char* file, const char* folder) {
+  const auto pyramid = TilePyramid::open(std::filesystem::path{folder} / "tileset.json");
+  if (!pyramid) return 2;
   const Box& box = (*pyramid)->bounds();
   std::vector<render::Picture> tiled;
   render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
@@ -93,23 +127,14 @@ int load(const char* file, const char* folder) {
   };
   for (int step = 1; step <= 10; ++step) {
     place(step);
-    View view;
-    view.eye = *options.camera.eye_m - (*pyramid)->origin();
-    view.fov_y_rad = options.camera.fov_y_rad;
-    std::vector<const Mesh*> tiles;
-    for (const NodeId tile : pager.settle(view)) tiles.push_back(pager.content(tile));
-    Mesh whole = merged(tiles);
-    whole.origin = (*pyramid)->origin();
-    auto picture = render::render_mesh(whole, options);
+    auto picture = render::render_tiles(*pyramid, options);
     if (!picture) return 2;
-    std::printf(
-        "{\"distance\": %d, \"tiles\": %zu, \"triangles\": %u, \"frame_seconds\": %.4f, \"resident_megabytes\": "
-        "%.1f}\n",
-        step, tiles.size(), picture->triangles, picture->frame_seconds,
-        1e-6 * static_cast<double>(pager.status().resident_bytes));
+    std::printf("{\"distance\": %d, \"tiles\": %u, \"triangles\": %u, \"frame_seconds\": %.4f}\n", step, picture->tiles,
+                picture->triangles, picture->frame_seconds);
     tiled.push_back(std::move(*picture));
   }
-  start = wall_seconds();
+  std::printf("{\"peak_megabytes\": %.0f}\n", peak_mb());
+  const double start = wall_seconds();
   const Mesh mesh = read(file, LoadTextures::Decoded);
   std::printf("{\"monolith_load_seconds\": %.2f}\n", wall_seconds() - start);
   for (int step = 1; step <= 10; ++step) {
@@ -167,8 +192,11 @@ int main(int argc, char** argv) {
   if (mode == "build" && argc >= 5) {
     return build(argv[2], argv[3], std::atof(argv[4]), argc > 5 ? static_cast<unsigned>(std::atoi(argv[5])) : 0);
   }
+  if (mode == "first" && argc == 3) return first(argv[2]);
   if (mode == "load" && argc == 4) return load(argv[2], argv[3]);
   if (mode == "error" && argc == 3) return error(argv[2]);
-  std::fprintf(stderr, "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | load MESH FOLDER | error MESH\n");
+  std::fprintf(
+      stderr,
+      "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | first FOLDER | load MESH FOLDER | error MESH\n");
   return 1;
 }

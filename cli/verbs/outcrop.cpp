@@ -43,8 +43,9 @@ void Outcrop::declare(Arguments& arguments) {
                    "Texture width kept from level to level, 0 = --ratio, or a half");
   arguments.bytes("--tile-bytes", tile_bytes_, "Bytes of a tile to aim at, 0 = by the size of the whole");
   arguments.choice("--split", split_, {"auto", "texture", "space"}, "How images are cut into tiles");
-  arguments.choice("--image", image_, {"jpeg", "png"}, "Format of the tiles' textures");
-  arguments.count("--quality", quality_, 1, 100, "Of JPEG; from 90 on colours keep their full resolution");
+  arguments.choice("--image", image_, {"jpeg", "png", "webp"}, "Format of the tiles' textures");
+  arguments.count("--quality", quality_, 1, 100,
+                  "Of JPEG and WebP; JPEG from 90 on keeps the full resolution of colours");
   arguments.choice("--tiles-version", version_, {"1.1", "1.0"}, "3D Tiles: glb, or b3dm for older clients");
   arguments.flag("--resume", resume_, "Go on with a build that was stopped");
 }
@@ -57,6 +58,7 @@ TilesetOptions Outcrop::options() const {
   if (split_ == "texture") options.pyramid.split = TileSplit::Texture;
   if (split_ == "space") options.pyramid.split = TileSplit::Space;
   if (image_ == "png") options.image = TileImage::Png;
+  if (image_ == "webp") options.image = TileImage::Webp;
   if (version_ == "1.0") options.version = TilesVersion::V1_0;
   options.jpeg_quality = static_cast<int>(quality_);
   options.resume = resume_;
@@ -113,6 +115,9 @@ std::uint64_t bytes_below(const std::filesystem::path& folder) {
 
 Status Outcrop::run(Session& session) {
   const bool osgb = as_ == "osgb";
+  if (osgb && image_ == "webp") {
+    return Error{ErrorCode::BadArgument, "OpenSceneGraph does not read WebP, take --image jpeg or png", ""};
+  }
   const std::filesystem::path tiles = osgb ? output_ / "3dtiles" : output_;
   auto loaded = input_.read(session, LoadTextures::Reference);
   if (!loaded) return loaded.error();

@@ -24,7 +24,11 @@
 
 namespace lodestone {
 
-enum class TileImage : std::uint8_t { Jpeg, Png };
+enum class TileImage : std::uint8_t {
+  Jpeg,
+  Png,   ///< lossless
+  Webp,  ///< a third smaller than JPEG and slower to make; clients must know EXT_texture_webp, OpenSceneGraph does not
+};
 
 enum class TilesVersion : std::uint8_t {
   V1_1,  ///< glb
@@ -34,7 +38,7 @@ enum class TilesVersion : std::uint8_t {
 struct TilesetOptions {
   OutcropOptions pyramid;
   TileImage image = TileImage::Jpeg;
-  int jpeg_quality = 90;  ///< 1..100; from 90 on colours are not subsampled
+  int jpeg_quality = 90;  ///< 1..100, of WebP as well; JPEG from 90 on does not subsample colours
   TilesVersion version = TilesVersion::V1_1;
   /// Goes on with a build of the same input and options that was stopped at any point; tiles that are there are kept.
   /// The folder comes out the same, byte for byte.

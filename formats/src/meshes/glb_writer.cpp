@@ -27,10 +27,13 @@ enum GltfConstant : int {
 
 constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) & ~std::uint64_t{3}; }
 
-// glTF takes JPEG and PNG; anything else is turned into PNG.
-Result<EncodedTexture> jpeg_or_png(const Texture& texture) {
+constexpr const char* webp = "image/webp";
+
+// glTF takes JPEG and PNG, and WebP by an extension that tiles use; anything else is turned into PNG.
+Result<EncodedTexture> image_for_gltf(const Texture& texture, GltfLook look) {
   auto encoded = encoded_texture(texture);
   if (!encoded || encoded->mime_type == "image/jpeg" || encoded->mime_type == "image/png") return encoded;
+  if (look == GltfLook::Photograph && encoded->mime_type == webp) return encoded;
   auto image = decode_image(encoded->bytes, texture.name);
   if (!image) return image.error();
   auto png = encode_png(*image);
@@ -148,9 +151,10 @@ void GlbWriter::plan_levels(Json& node) {
 }
 
 void GlbWriter::plan_textures(std::vector<Warning>& warnings) {
+  bool has_webp = false;
   for (const Texture& texture : first_.textures) {
     texture_ids_.push_back(-1);
-    auto encoded = jpeg_or_png(texture);
+    auto encoded = image_for_gltf(texture, look_);
     if (!encoded) {
       warnings.push_back({"a texture was left out: it " + encoded.error().message, encoded.error().where});
       continue;
@@ -160,7 +164,17 @@ void GlbWriter::plan_textures(std::vector<Warning>& warnings) {
     const EncodedTexture& image = images_.back();
     root_["images"].push_back(
         {{"name", texture.name}, {"mimeType", image.mime_type}, {"bufferView", add_view(image.bytes.size(), 0)}});
-    root_["textures"].push_back({{"source", texture_ids_.back()}});
+    if (image.mime_type != webp) {
+      root_["textures"].push_back({{"source", texture_ids_.back()}});
+      continue;
+    }
+    Json json;
+    json["extensions"]["EXT_texture_webp"] = {{"source", texture_ids_.back()}};
+    root_["textures"].push_back(std::move(json));
+    has_webp = true;
+  }
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    if (has_webp) root_[list].push_back("EXT_texture_webp");
   }
   if (look_ == GltfLook::Lit || images_.empty()) return;
   constexpr int linear = 9729;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -47,7 +48,10 @@ template <class Job>
   };
   const auto extra = static_cast<unsigned>(std::min<std::size_t>(workers, count));
   std::vector<std::jthread> threads;
-  for (unsigned t = 1; t < extra; ++t) threads.emplace_back(work);
+  try {
+    for (unsigned t = 1; t < extra; ++t) threads.emplace_back(work);
+  } catch (const std::system_error&) {  // no room for another stack: fewer do as well
+  }
   work();
   threads.clear();
   if (exception) std::rethrow_exception(exception);

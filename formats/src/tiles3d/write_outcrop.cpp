@@ -226,11 +226,14 @@ Status OutcropWriter::put_texture(TileContent& content, std::span<const SegmentI
     pixels = compose(content.texture, images);
   }
   const Stopwatch watch{mutex_, report_.encode_seconds};
-  const bool png = options_.image == TileImage::Png || pixels.channels % 2 == 0;
-  auto bytes = png ? encode_png(pixels) : encode_jpeg(pixels, options_.jpeg_quality);
+  const bool webp = options_.image == TileImage::Webp;
+  const bool png = options_.image == TileImage::Png || (!webp && pixels.channels % 2 == 0);
+  auto bytes = webp  ? encode_webp(pixels, options_.jpeg_quality)
+               : png ? encode_png(pixels)
+                     : encode_jpeg(pixels, options_.jpeg_quality);
   if (!bytes) return bytes.error();
   Texture& texture = content.mesh.textures.front();
-  texture.mime_type = png ? "image/png" : "image/jpeg";
+  texture.mime_type = webp ? "image/webp" : (png ? "image/png" : "image/jpeg");
   texture.encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
   const std::scoped_lock lock{mutex_};
   report_.encoded_megapixels += 1e-6 * static_cast<double>(pixels.width) * pixels.height;

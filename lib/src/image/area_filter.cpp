@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include <lodestone/types.h>
+
 namespace lodestone {
 namespace {
 
@@ -71,24 +73,30 @@ Footprints footprints(std::uint32_t length, std::uint32_t count) {
   return result;
 }
 
-// One source row made narrower, in linear light, added to `sums` with a weight. Colours are weighted by alpha.
-void add_row(const Image& source, std::uint32_t y, const Footprints& across, float weight, std::vector<float>& sums) {
-  const auto& linear = tables().linear;
-  const std::uint32_t channels = source.channels;
-  const bool has_alpha = channels == 2 || channels == 4;
-  const std::uint32_t colors = has_alpha ? channels - 1 : channels;
-  float* sum = sums.data();
+// One source row made narrower, in linear light. Colours are weighted by alpha. The number of channels is known when it
+// is compiled: this is where the time goes.
+template <std::uint32_t channels>
+void filter_row(const std::uint8_t* row, const Footprints& across, float* to) {
+  const float* linear = tables().linear.data();
+  constexpr bool has_alpha = channels == 2 || channels == 4;
+  constexpr std::uint32_t colors = has_alpha ? channels - 1 : channels;
   for (const Footprint& print : across.of) {
-    const std::uint8_t* from = source.at(print.first, y);
+    const std::uint8_t* from = row + std::size_t{print.first} * channels;
     const float* w = &across.weights[print.offset];
+    std::array<float, channels> sum{};
     for (std::uint32_t i = 0; i < print.count; ++i, from += channels) {
-      const float share = weight * w[i];
-      const float opaque = has_alpha ? share * static_cast<float>(from[colors]) / 255.0F : share;
+      const float opaque = has_alpha ? w[i] * static_cast<float>(from[channels - 1]) / 255.0F : w[i];
       for (std::uint32_t c = 0; c < colors; ++c) sum[c] += opaque * linear[from[c]];
-      if (has_alpha) sum[colors] += opaque;
+      if (has_alpha) sum[channels - 1] += opaque;
     }
-    sum += channels;
+    for (std::uint32_t c = 0; c < channels; ++c) *to++ = sum[c];
   }
+}
+
+using FilterRow = void (*)(const std::uint8_t*, const Footprints&, float*);
+FilterRow filter_of(std::uint32_t channels) {
+  constexpr std::array<FilterRow, 4> filters{filter_row<1>, filter_row<2>, filter_row<3>, filter_row<4>};
+  return filters[channels - 1];
 }
 
 void store_row(const std::vector<float>& sums, Image& out, std::uint32_t y) {
@@ -114,11 +122,17 @@ Image shrink(const Image& source, std::uint32_t width, std::uint32_t height) {
   const Footprints across = footprints(source.width, width);
   const Footprints down = footprints(source.height, height);
   std::vector<float> sums(static_cast<std::size_t>(width) * source.channels);
+  std::vector<float> row(sums.size());
+  const FilterRow filter = filter_of(source.channels);
+  std::uint32_t filtered = none;  // the source row in `row`: one that two pixels share is filtered once
   for (std::uint32_t y = 0; y < height; ++y) {
     std::fill(sums.begin(), sums.end(), 0.0F);
     const Footprint& print = down.of[y];
     for (std::uint32_t i = 0; i < print.count; ++i) {
-      add_row(source, print.first + i, across, down.weights[print.offset + i], sums);
+      if (filtered != print.first + i) filter(source.at(0, print.first + i), across, row.data());
+      filtered = print.first + i;
+      const float weight = down.weights[print.offset + i];
+      for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * row[k];
     }
     store_row(sums, out, y);
   }

@@ -161,6 +161,23 @@ TEST_CASE("Older clients get batched models with the same content") {
   CHECK(tile.find(plain.at("tiles/L0_0.glb")) % 8 == 0);
 }
 
+TEST_CASE("Textures are JPEG, PNG or WebP, as asked, and read back") {
+  for (const auto& [image, type] :
+       {std::pair{TileImage::Jpeg, "image/jpeg"}, {TileImage::Png, "image/png"}, {TileImage::Webp, "image/webp"}}) {
+    const fs::path folder = scratch_folder("tileset_images");
+    TilesetOptions with = options();
+    with.image = image;
+    static_cast<void>(write(folder, with));
+    const auto tile = read_mesh(folder / "tiles/L0_0.glb", {.textures = LoadTextures::Encoded});
+    REQUIRE(tile);
+    REQUIRE(tile->mesh.textures.size() == 1);
+    CHECK(tile->mesh.textures.front().mime_type == type);
+    const auto pixels = decode_image(*tile->mesh.textures.front().encoded, "tile");
+    REQUIRE(pixels);
+    CHECK(pixels->width % 8 == 0);
+  }
+}
+
 TEST_CASE("Odd photographs are used, broken ones are refused or left out by name") {
   const fs::path folder = scratch_folder("tileset_photos");
   const fs::path corpus = fs::path{LODESTONE_CORPUS} / "image";
@@ -177,6 +194,20 @@ TEST_CASE("Odd photographs are used, broken ones are refused or left out by name
     CHECK(written.warnings().empty());
     CHECK(written->decoded_megapixels > 0.0);
   }
+  // Turned by its EXIF orientation: the size is that of the upright picture.
+  const fs::path turned = folder / "turned.jpg";
+  Image wide{48, 16, 3, std::vector<std::uint8_t>(48 * 16 * 3, 90)};
+  auto jpeg = encode_jpeg(wide, 90);
+  REQUIRE(jpeg);
+  const std::uint8_t exif[] = {0xFF, 0xE1, 0,    34,   'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8,
+                               0,    1,    0x01, 0x12, 0,   3,   0,   0,   0, 1, 0,   6,   0, 0,  0, 0, 0, 0};
+  jpeg->insert(jpeg->begin() + 2, std::begin(exif), std::end(exif));
+  std::ofstream{turned, std::ios::binary}.write(reinterpret_cast<const char*>(jpeg->data()),
+                                                static_cast<std::streamsize>(jpeg->size()));
+  const auto upright = with(turned);
+  REQUIRE(upright);
+  CHECK(upright->segments.front().width_px < upright->segments.front().height_px);
+
   const auto missing = with(corpus / "nothing.jpg");
   REQUIRE(missing);
   CHECK(missing.warnings().size() == 1);

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The program itself, ended from outside or short of room: what it leaves, what it says, how much it takes.
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+
+#include <fstream>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <lodestone/formats.h>
+
+#include "data.h"
+#include "fixture.h"
+
+namespace lodestone::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Room {
+  std::uint64_t most_file_bytes = 0;  // 0 = no limit
+};
+
+// The program's words go to `log`.
+pid_t start(const std::vector<std::string>& words, const fs::path& log, const Room& room = {}) {
+  std::vector<std::string> all{LODESTONE_PROGRAM};
+  all.insert(all.end(), words.begin(), words.end());
+  std::vector<char*> arguments;
+  for (std::string& word : all) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  const int file = ::open(log.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
+  ::dup2(file, STDOUT_FILENO);
+  ::dup2(file, STDERR_FILENO);
+  if (room.most_file_bytes > 0) {
+    const rlimit limit{room.most_file_bytes, room.most_file_bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::signal(SIGXFSZ, SIG_IGN);
+  }
+  ::execv(arguments.front(), arguments.data());
+  ::_exit(127);
+}
+
+int end(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream{file};
+  return {std::istreambuf_iterator<char>{stream}, {}};
+}
+
+// 24 patches of 200 triangles, each with its own photograph of 1024 x 1024 (one file under many names).
+fs::path patches(const fs::path& folder, int images) {
+  constexpr std::uint32_t size = 1024;
+  constexpr int side = 10;
+  Image noisy{size, size, 3, {}};
+  noisy.pixels.resize(std::size_t{size} * size * 3);
+  for (std::size_t i = 0; i < noisy.pixels.size(); ++i) {
+    noisy.pixels[i] = static_cast<std::uint8_t>(128 + i % 61 + (i / 4096) % 31);
+  }
+  REQUIRE(write_image(noisy, folder / "0.jpg"));
+  std::ofstream obj{folder / "patches.obj"};
+  std::ofstream mtl{folder / "patches.mtl"};
+  obj << "mtllib patches.mtl\n";
+  for (int i = 0; i < images; ++i) {
+    const std::string name = std::to_string(i);
+    if (i > 0) fs::create_hard_link(folder / "0.jpg", folder / (name + ".jpg"));
+    mtl << "newmtl " << name << "\nmap_Kd " << name << ".jpg\n";
+    obj << "usemtl " << name << '\n';
+    for (int y = 0; y <= side; ++y) {
+      for (int x = 0; x <= side; ++x) {
+        obj << "v " << i * side + x << ' ' << (x * y) % 3 * 0.1 << ' ' << y << "\nvt " << x * 0.1 << ' ' << y * 0.1
+            << '\n';
+      }
+    }
+    const int first = i * (side + 1) * (side + 1) + 1;
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const int a = first + y * (side + 1) + x;
+        const int c = a + side + 2;
+        const auto corner = [&](int v) { obj << ' ' << v << '/' << v; };
+        for (const int b : {a + 1, c - 1}) {
+          obj << 'f';
+          corner(a);
+          corner(b == a + 1 ? b : c);
+          corner(b == a + 1 ? c : b);
+          obj << '\n';
+        }
+      }
+    }
+  }
+  return folder / "patches.obj";
+}
+
+double peak_mb(const fs::path& source, const std::vector<std::string>& more) {
+  const fs::path folder = scratch_folder("stopped_memory");
+  std::vector<std::string> words{"outcrop", source.string(), "-o", (folder / "tiles").string(), "--json"};
+  words.insert(words.end(), more.begin(), more.end());
+  const int code = end(start(words, folder / "log"));
+  INFO(text_of(folder / "log"));
+  REQUIRE(code == 0);
+  return nlohmann::json::parse(text_of(folder / "log"))["peak_rss_bytes"].get<double>() / 1e6;
+}
+
+}  // namespace
+
+TEST_CASE("A build that is killed goes on with --resume to the same bytes") {
+  const fs::path folder = scratch_folder("stopped_killed");
+  REQUIRE(write_mesh(small_cliff(), folder / "cliff.obj"));
+  const auto words = [&](const char* to) {
+    return std::vector<std::string>{"outcrop",      (folder / "cliff.obj").string(),
+                                    "-o",           (folder / to).string(),
+                                    "--tile-bytes", "12000",
+                                    "--threads",    "1",
+                                    "--image",      "png"};
+  };
+  REQUIRE(end(start(words("whole"), folder / "log")) == 0);
+  bool killed = false;
+  for (int attempt = 0; attempt < 5 && !killed; ++attempt) {
+    fs::remove_all(folder / "cut");
+    const pid_t child = start(words("cut"), folder / "log");
+    while (!fs::exists(folder / "cut/tiles/L0_3.glb") && ::waitpid(child, nullptr, WNOHANG) == 0) ::usleep(200);
+    ::kill(child, SIGKILL);
+    static_cast<void>(end(child));
+    killed = !fs::exists(folder / "cut/tileset.json");
+  }
+  REQUIRE(killed);
+  auto again = words("cut");
+  again.insert(again.end(), {"--resume", "--json"});
+  REQUIRE(end(start(again, folder / "log")) == 0);
+  CHECK(nlohmann::json::parse(text_of(folder / "log"))["kept_tiles"].get<int>() > 0);
+  CHECK(files_of(folder / "cut") == files_of(folder / "whole"));
+}
+
+TEST_CASE("Where there is no room for a tile the program says so, leaves nothing half-written, and can go on") {
+  const fs::path folder = scratch_folder("stopped_full");
+  REQUIRE(write_mesh(small_cliff(), folder / "cliff.obj"));
+  std::vector<std::string> words{
+      "outcrop", (folder / "cliff.obj").string(), "-o", (folder / "tiles").string(), "--tile-bytes", "24000",
+      "--quiet"};
+  CHECK(end(start(words, folder / "log", {.most_file_bytes = 9'000})) == 2);
+  const std::string said = text_of(folder / "log");
+  INFO(said);
+  CHECK(said.find("lodestone: ") == 0);
+  CHECK(said.find("tiles/") != std::string::npos);  // which file
+  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
+  CHECK(!fs::exists(folder / "tiles/tileset.json"));
+  for (const auto& [name, content] : files_of(folder / "tiles")) CHECK(name.find(".part") == std::string::npos);
+  words.insert(words.end(), {"--resume"});
+  CHECK(end(start(words, folder / "log")) == 0);
+  CHECK(fs::exists(folder / "tiles/tileset.json"));
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which keeps freed memory
+TEST_CASE("Memory does not grow with the number of images, and --max-memory holds") {
+  const fs::path few = scratch_folder("stopped_few");
+  const fs::path many = scratch_folder("stopped_many");
+  constexpr double image_mb = 1024.0 * 1024.0 * 3.0 / 1e6;
+  const fs::path source = patches(many, 24);
+  const double of_few = peak_mb(patches(few, 4), {"--threads", "1"});
+  const double of_many = peak_mb(source, {"--threads", "1"});
+  CHECK(of_many < of_few + 3.0 * image_mb);  // twenty more are 63 MB
+  const double limit_mb = 1.1 * of_many;
+  const double limited =
+      peak_mb(source, {"--threads", "8", "--max-memory", std::to_string(static_cast<int>(limit_mb)) + "MB"});
+  CHECK(limited < 1.2 * limit_mb);
+}
+#endif
+
+}  // namespace lodestone::test
