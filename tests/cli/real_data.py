@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Builds and verifies every real building, outcrop, mesh and geological model, by the program, against its source.
 
-    LODESTONE=path/to/lodestone real_data.py ROOT GROUP      GROUP: buildings street city outcrops meshes geology
+    LODESTONE=path/to/lodestone real_data.py ROOT GROUP      GROUP: buildings street city ifc outcrops meshes geology
 
 ROOT is $LODESTONE_DATA or the folder given; prints SKIPPED where it is absent.
 """
@@ -17,10 +17,13 @@ from pathlib import Path
 PROGRAM = os.environ.get("LODESTONE", "lodestone")
 HOLDS = ("exact", "monotone", "in_use_consistent", "source_matches")
 
+IFC = Path("/usr/share/assimp/models/IFC/AC14-FZK-Haus.ifc")
+
 GROUPS = {
     "buildings": ["buildings/[0-9]*/*.obj"],
     "street": ["buildings/street_all/*.obj"],
     "city": ["buildings/3ds/*.3ds", "buildings/citygml/*/*.xml"],
+    "ifc": [],  # of Debian's assimp-testmodels
     "outcrops": ["outcrops/*/*.obj"],
     "meshes": ["meshes/*/*.obj", "meshes/*/*.ply", "meshes/*/*.glb", "meshes/*/*.gltf"],
     "geology": ["geology/obj/*.obj"],
@@ -54,6 +57,11 @@ def main():
         print("SKIPPED: real data not found; set LODESTONE_DATA or place it at ../shared/data")
         return 0
     sources = sorted(path for pattern in GROUPS[sys.argv[2]] for path in root.glob(pattern))
+    if sys.argv[2] == "ifc":
+        if not IFC.exists():
+            print("SKIPPED: no IFC house; install assimp-testmodels")
+            return 0
+        sources = [IFC]
     if not sources:
         print(f"nothing of group {sys.argv[2]} in {root}")
         return 1

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
@@ -23,7 +24,9 @@ constexpr double margin_m = 4.0;  // around everything: keeps what overhangs out
 constexpr double least_agreement = 0.6;  // of footprint and coverage: intersection over union
 constexpr double corner_price = 0.015;   // of agreement that a corner more must bring
 constexpr double least_loop_share = 0.03;
-constexpr int raster_cells = 192;  // along the longer side
+constexpr double high_share = 0.8;    // so much of the ground is covered lower than what counts as high
+constexpr double ground_ratio = 0.2;  // of that height: lower is no building
+constexpr int raster_cells = 192;     // along the longer side
 
 struct Line {
   glm::dvec2 normal{0.0};
@@ -47,6 +50,7 @@ class Raster {
     ny_ = static_cast<int>((box.max.y - box.min.y) / cell_m_) + 1;
     heights_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), empty_height);
     for (FaceId f = 0; f < mesh.triangle_count(); ++f) draw(mesh, f);
+    forget_ground(box.min.z);
   }
 
   // Calls visit(place, height) for all cells whose middle lies in the box; height is `empty_height` where nothing is.
@@ -71,6 +75,17 @@ class Raster {
   [[nodiscard]] glm::ivec2 cell_of(const glm::dvec2& p) const { return glm::ivec2{glm::floor((p - low_) / cell_m_)}; }
   [[nodiscard]] double at(int x, int y) const {
     return heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(x)];
+  }
+
+  // The ground around a building may come with it, as a slab or a terrace.
+  void forget_ground(double low_m) {
+    std::vector<double> full;
+    std::copy_if(heights_.begin(), heights_.end(), std::back_inserter(full), [](double h) { return h > empty_height; });
+    if (full.empty()) return;
+    const auto high = full.begin() + static_cast<std::ptrdiff_t>(high_share * static_cast<double>(full.size() - 1));
+    std::nth_element(full.begin(), high, full.end());
+    const double ground_m = low_m + ground_ratio * (*high - low_m);
+    for (double& h : heights_) h = h < ground_m ? empty_height : h;
   }
 
   void draw(const Mesh& mesh, FaceId f) {

@@ -31,11 +31,21 @@ SurfaceClass kind_by_name(std::string_view name) {
   return SurfaceClass::Other;
 }
 
+// Of the words of IFC only those whose every face is of one class: slabs and roofs have all directions.
+SurfaceClass kind_by_ifc_name(std::string_view name) {
+  if (name.starts_with("IfcWindow") || name.starts_with("IfcDoor")) return SurfaceClass::Opening;
+  for (const char* installation : {"IfcRailing", "IfcStair", "IfcBeam", "IfcColumn", "IfcMember", "IfcFurnishing"}) {
+    if (name.starts_with(installation)) return SurfaceClass::Installation;
+  }
+  return SurfaceClass::Other;
+}
+
 // The innermost feature around the face that has a class we know; else the direction.
 SurfaceClass kind_of(const Mesh& mesh, FaceId f, const glm::dvec3& normal) {
   std::uint32_t steps = 0;
   for (FeatureId i = mesh.face_feature(f); i != none && steps < 16; i = mesh.features[i].parent, ++steps) {
-    const SurfaceClass kind = kind_by_name(mesh.features[i].semantic_class);
+    const std::string_view name = mesh.features[i].semantic_class;
+    const SurfaceClass kind = name.starts_with("Ifc") ? kind_by_ifc_name(name) : kind_by_name(name);
     if (kind != SurfaceClass::Other) return kind;
   }
   return kind_by_direction(normal);

@@ -97,6 +97,29 @@ Place place_of(const Triangle& t, FaceId f) {
   return {low, high, f, 0.5 * glm::length(t.normal), {}};
 }
 
+// Whether the face is a thin one that lies along a side of a triangle of the source that is still whole.
+bool closes_crack(const Mesh& source, const Mesh& cut, FaceId f) {
+  const Triangle piece{cut, f};
+  if (glm::length(piece.normal) > off_m * piece.longest()) return false;
+  for (FaceId whole = 0; whole < source.triangle_count(); ++whole) {
+    if (source.face_material(whole) != cut.face_material(f) || source.face_feature(whole) != cut.face_feature(f))
+      continue;
+    const Triangle triangle{source, whole};
+    if (glm::length(triangle.normal) > 0.0 && is_piece(source, triangle, cut, piece)) return true;
+  }
+  return false;
+}
+
+// Whether all corners of the triangle are used: a needle at one of them may have been counted to a neighbour.
+bool corners_used(const Triangle& whole, const Mesh& cut, const std::vector<FaceId>& pieces) {
+  return std::all_of(whole.at.begin(), whole.at.end(), [&](const glm::dvec3& corner) {
+    return std::any_of(pieces.begin(), pieces.end(), [&](FaceId f) {
+      const Triangle piece{cut, f};
+      return std::find(piece.at.begin(), piece.at.end(), corner) != piece.at.end();
+    });
+  });
+}
+
 }  // namespace
 
 Uncovered find_uncovered(const Mesh& source, const std::vector<FaceId>& wholes, const Mesh& cut,
@@ -122,7 +145,7 @@ Uncovered find_uncovered(const Mesh& source, const std::vector<FaceId>& wholes, 
     }
     // A needle that fills the crack between a side and the points beside it belongs to no triangle.
     const bool needle = 2.0 * area < std::min(off_m, 0.01 * piece.longest()) * piece.longest();
-    if (best == nullptr && needle) continue;
+    if (best == nullptr && (needle || closes_crack(source, cut, f))) continue;
     if (best == nullptr) return {none, f};
     best->left_m2 -= area;
     const Triangle whole{source, best->face};
@@ -133,7 +156,9 @@ Uncovered find_uncovered(const Mesh& source, const std::vector<FaceId>& wholes, 
   }
   for (const Place& place : places) {
     const auto& corners = place.has_corner;
-    if (!corners[0] || !corners[1] || !corners[2]) return {place.face, none};
+    if ((!corners[0] || !corners[1] || !corners[2]) && !corners_used(Triangle{source, place.face}, cut, pieces)) {
+      return {place.face, none};
+    }
     if (std::abs(place.left_m2) > 2.0 * off_m * Triangle{source, place.face}.longest()) return {place.face, none};
   }
   return {};

@@ -51,7 +51,12 @@ TEST_CASE("semantic classes go before directions") {
   mesh.features = {{"w", "WallSurface", none}, {"v", "Window", 0}, {"x", "", 1}};
   mesh.face_features.assign(mesh.triangle_count(), 2);
   for (const CharacteristicSurface& s : characteristic_surfaces(mesh).surfaces) CHECK(s.kind == SurfaceClass::Opening);
+  mesh.features[2].semantic_class = "IfcRailing";
+  for (const auto& s : characteristic_surfaces(mesh).surfaces) CHECK(s.kind == SurfaceClass::Installation);
+  mesh.features = {{"s", "IfcSlab", none}};
   mesh.face_features.assign(mesh.triangle_count(), 0);
+  CHECK(characteristic_surfaces(mesh).surfaces.size() == 6);  // by direction: a slab has a top, a bottom and sides
+  mesh.features = {{"w", "WallSurface", none}};
   for (const CharacteristicSurface& s : characteristic_surfaces(mesh).surfaces) CHECK(s.kind == SurfaceClass::Wall);
 }
 
