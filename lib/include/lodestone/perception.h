@@ -158,7 +158,7 @@ using RenderAtDistance = std::function<Result<ObjectPicture>(double distance_m)>
 /// distances.
 [[nodiscard]] std::vector<DetailSample> pool_sides(const std::vector<std::vector<DetailSample>>& sides);
 
-/// Equation 15: f(x) = a exp(b x) + c exp(d x), x in metres beyond d1. Falls: b, d <= 0.
+/// Equation 15: f(x) = a exp(b x) + c exp(d x), x in metres beyond d1. Falls: a, c >= 0 and b, d <= 0.
 struct DetailFit {
   double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
   double r_square = 1.0;

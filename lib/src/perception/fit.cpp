@@ -15,7 +15,16 @@ struct Data {
   std::vector<double> x, y;
 };
 
-// Best factors for rates b and d; returns the sum of squared residuals.
+double squared_residuals(const Data& data, const DetailFit& fit) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < data.x.size(); ++i) {
+    const double residual = fit(data.x[i]) - data.y[i];
+    sum += residual * residual;
+  }
+  return sum;
+}
+
+// Best factors, none negative, for rates b and d; returns the sum of squared residuals.
 double solve_factors(const Data& data, DetailFit& fit) {
   double ee = 0.0;
   double ef = 0.0;
@@ -39,12 +48,15 @@ double solve_factors(const Data& data, DetailFit& fit) {
     fit.a = ee > 0.0 ? ey / ee : 0.0;
     fit.c = 0.0;
   }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < data.x.size(); ++i) {
-    const double residual = fit(data.x[i]) - data.y[i];
-    sum += residual * residual;
-  }
-  return sum;
+  if (fit.a >= 0.0 && fit.c >= 0.0) return squared_residuals(data, fit);
+  // A negative term would rise with distance: the better of both alone.
+  DetailFit other = fit;
+  fit.a = ee > 0.0 ? std::max(0.0, ey / ee) : 0.0;
+  fit.c = 0.0;
+  other.a = 0.0;
+  other.c = ff > 0.0 ? std::max(0.0, fy / ff) : 0.0;
+  if (squared_residuals(data, other) < squared_residuals(data, fit)) fit = other;
+  return squared_residuals(data, fit);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ Result<VisibleDetail> visible_detail(const ObjectPicture& picture, const VisionM
     if (perception::grey(picture.image, i) != seen->pixels[i]) ++detail.imperceptible_pixels;
   }
   if (detail.object_pixels == 0)
-    return bad("no pixel of the picture belongs to the object; is it behind the camera or too small?");
+    return bad("no pixel of the picture belongs to the object; is it behind the camera, too small or seen edge-on?");
   return detail;
 }
 

@@ -123,6 +123,23 @@ TEST_CASE("the fit finds the paper's four numbers in their own samples, and says
   CHECK_FALSE(fit_detail(broken).ok());
 }
 
+TEST_CASE("a fit falls even where the samples rise first, and says that it is poor") {
+  std::vector<DetailSample> samples;
+  for (int i = 0; i <= 60; ++i) {
+    const double x = 5.0 * i;
+    samples.push_back({50.0 + x, 0.6 * std::exp(-0.02 * x) - 0.5 * std::exp(-0.08 * x), {}});
+  }
+  const auto fit = fit_detail(samples);
+  REQUIRE(fit.ok());
+  CHECK(fit->a >= 0.0);
+  CHECK(fit->c >= 0.0);
+  for (double x = 0.0; x < 300.0; x += 10.0) CHECK((*fit)(x) >= (*fit)(x + 10.0));
+  CHECK_FALSE(fit.warnings().empty());
+  const auto plan = design_switches(*fit, 3, 5000.0);
+  REQUIRE(plan.ok());
+  CHECK(plan->redundancy >= 0.0);
+}
+
 TEST_CASE("sampling covers the range in order, evenly or where the metric changes, and falls with distance") {
   const VisionModel vision{Display{}};
   for (const Sampling sampling : {Sampling::EqualSteps, Sampling::Adaptive}) {
