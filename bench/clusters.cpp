@@ -8,19 +8,22 @@
 // with the morph and without.
 #include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <numeric>
 #include <string>
 
-#include <lodestone/clusters.h>
+#include <lodestone/cluster_file.h>
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
 
-#include "viewer/headless/headless.h"
+#include "viewer/headless/headless_clusters.h"
 
 namespace {
 
@@ -74,36 +77,38 @@ void print_errors(const ClusterGraph& graph, const Mesh& source) {
   }
 }
 
-// The largest and the mean jump between pictures, groups morphed or exchanged at once.
-void print_fly(const ClusterGraph& graph, int frames, bool morphed) {
+// The largest and the mean jump between pictures while a camera flies in, groups morphed or exchanged at once.
+void print_fly(const ClusterGraph& graph, std::uint32_t frames) {
+  const auto file = std::filesystem::temp_directory_path() / ("bench_clusters_" + std::to_string(getpid()) + ".lodg");
+  const auto written = write_cluster_graph(graph, file);
+  const auto opened = ClusterFile::open(file);
+  std::filesystem::remove(file);
+  if (!written.ok() || !opened.ok()) return;
   const Sphere& all = graph.graph.groups[0].bounds;
-  render::RenderOptions options{.width_px = 640, .height_px = 360};
-  options.look.coloring = render::Coloring::Untextured;
-  options.camera.eye_m = graph.origin + all.center - glm::dvec3{0.0, 1.6 * all.radius_m, -0.5 * all.radius_m};
-  options.camera.target_m = graph.origin + all.center;
-  CutScratch scratch;
-  std::vector<NodeId> cut;
-  std::vector<double> weights(graph.graph.groups.size(), 0.0);
-  Image before;
-  double most = 0.0;
-  double sum = 0.0;
-  for (int i = 0; i < frames; ++i) {
+  render::FlightOptions options{.frames = frames};
+  options.render.look.coloring = render::Coloring::Untextured;
+  options.path = [&](const Box&, double share) {
     View view;
-    view.eye = all.center - glm::dvec3{0.0, (8.0 - 7.0 * i / frames) * all.radius_m, 0.0};
-    select_cut(graph.graph, view, {.error_px = 4.0, .culling = Culling::None}, scratch, cut);
-    std::fill(weights.begin(), weights.end(), 0.0);
-    for (const GroupId g : scratch.refined()) weights[g] = morphed ? morph_weight(graph.graph, view, 4.0, g) : 0.0;
-    auto picture = render::render_mesh(extract_morphed(graph, cut, weights), options);
-    if (!picture.ok()) return;
-    if (i > 0) {
-      const double pop = block_pop(before, picture->image);
-      most = std::max(most, pop);
-      sum += pop;
-    }
-    before = std::move(picture->image);
+    view.eye = all.center - glm::dvec3{0.0, (8.0 - 7.0 * share) * all.radius_m, 0.0};
+    return view;
+  };
+  options.watch = [&](const Box&) {
+    View view;
+    view.width_px = 640;
+    view.height_px = 360;
+    view.eye = all.center - glm::dvec3{0.0, 1.6 * all.radius_m, -0.5 * all.radius_m};
+    view.forward = glm::normalize(all.center - view.eye);
+    return view;
+  };
+  for (const double seconds : {0.0, 0.3, 0.5, 1.0}) {
+    options.morph_seconds = seconds;
+    const auto flight = render::fly_clusters(*opened, options);
+    if (!flight.ok()) return;
+    const double sum = std::accumulate(flight->pops.begin(), flight->pops.end(), 0.0);
+    std::printf("%s{\"morph_s\": %g, \"pop_max\": %.2f, \"pop_mean\": %.3f, \"triangles\": %.0f}",
+                seconds == 0.0 ? "" : ", ", seconds, *std::max_element(flight->pops.begin(), flight->pops.end()),
+                sum / static_cast<double>(flight->pops.size()), flight->mean_triangles);
   }
-  std::printf("\"pop_max_%s\": %.2f, \"pop_mean_%s\": %.3f, ", morphed ? "morph" : "hard", most,
-              morphed ? "morph" : "hard", sum / (frames - 1));
 }
 
 }  // namespace
@@ -142,11 +147,9 @@ int main(int argc, char** argv) {
   getrusage(RUSAGE_SELF, &usage);
   std::printf("{\"triangles\": %u, \"cpu_s\": %.2f, \"wall_s\": %.2f, \"peak_mb\": %ld, \"roots\": %zu, ",
               mesh.triangle_count(), seconds, wall_s, usage.ru_maxrss / 1024, graph->roots.size());
-  if (frames > 1) {
-    print_fly(*graph, frames, false);
-    print_fly(*graph, frames, true);
-  }
-  std::printf("\"changed_border_edges\": %llu, \"levels\": [",
+  std::printf("\"fly\": [");
+  if (frames > 1) print_fly(*graph, static_cast<std::uint32_t>(frames));
+  std::printf("], \"changed_border_edges\": %llu, \"levels\": [",
               static_cast<unsigned long long>(changed_border_edges(*graph)));
   for (const ClusterLevel& level : graph->levels) {
     std::printf("%s{\"clusters\": %u, \"groups\": %u, \"triangles\": %llu, \"mean_fill\": %.1f, \"error_m\": %g}",

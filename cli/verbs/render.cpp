@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <lodestone/cluster_file.h>
 #include <lodestone/tile_loader.h>
 
 #include <chrono>
@@ -7,6 +8,7 @@
 #include "level_choice.h"
 #include "mesh_input.h"
 #include "verbs.h"
+#include "viewer/headless/headless_clusters.h"
 
 namespace lodestone::cli {
 namespace {
@@ -25,6 +27,7 @@ class Render final : public Verb {
   [[nodiscard]] Result<render::Picture> draw(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_model(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_tiles(Session& session, const render::RenderOptions& options) const;
+  [[nodiscard]] Result<render::Picture> draw_clusters(const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
                                                    const render::RenderOptions& options) const;
 
@@ -34,18 +37,22 @@ class Render final : public Verb {
   CameraOptions camera_;
   bool wireframe_ = false;
   bool lod_colors_ = false;
+  bool cluster_colors_ = false;
+  double error_px_ = 1.0;
   bool untextured_ = false;
   bool white_ = false;
   std::uint32_t sheet_levels_ = 0;
 };
 
 void Render::declare(Arguments& arguments) {
-  input_.declare(arguments, "FILE", "Mesh, .lode file or tileset.json");
+  input_.declare(arguments, "FILE", "Mesh, .lode or .lodg file or tileset.json");
   arguments.file("-o,--output", output_, "Picture to write: .png, .jpg or .webp", Need::Required);
   level_.declare(arguments);
   camera_.declare(arguments);
   arguments.flag("--wireframe", wireframe_, "Draw triangle edges over the surface");
   arguments.flag("--lod-colors", lod_colors_, "Colour by triangle size: blue is fine, red is coarse");
+  arguments.flag("--cluster-colors", cluster_colors_, "A colour for each cluster of a .lodg file");
+  arguments.number("--error-px", error_px_, 1e-3, 1e6, "Of a .lodg file: error on the screen that is allowed, pixels");
   arguments.flag("--untextured", untextured_, "Leave textures out");
   arguments.flag("--white", white_, "White background");
   arguments.count("--sheet", sheet_levels_, 0, 64,
@@ -83,6 +90,13 @@ Result<render::Picture> Render::draw_tiles(Session& session, const render::Rende
   return picture;
 }
 
+// The clusters that this camera needs, streamed in, where their morph stands.
+Result<render::Picture> Render::draw_clusters(const render::RenderOptions& options) const {
+  const auto file = ClusterFile::open(input_.file());
+  if (!file) return file.error();
+  return render::render_clusters(*file, options, error_px_);
+}
+
 Result<render::Picture> Render::draw(Session& session, const render::RenderOptions& options) const {
   if (level_.ways() > 1) {
     return Error{ErrorCode::BadArgument,
@@ -95,6 +109,7 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
   }
   if (is_tileset_file(input_.file())) return draw_tiles(session, options);
   if (input_.file().extension() == ".osgb") return is_for_openscenegraph(input_.file());
+  if (is_cluster_file(input_.file())) return draw_clusters(options);
   const auto loaded = input_.read(session);
   if (!loaded) return loaded.error();
   return render::render_mesh(loaded->mesh, options);
@@ -107,6 +122,7 @@ Status Render::run(Session& session) {
   options.look.wireframe = wireframe_;
   if (untextured_) options.look.coloring = render::Coloring::Untextured;
   if (lod_colors_) options.look.coloring = render::Coloring::Lod;
+  if (cluster_colors_) options.look.coloring = render::Coloring::Clusters;
   if (white_) options.look.background = render::Background::White;
   auto picture = draw(session, options);
   session.keep(picture);

@@ -80,6 +80,12 @@ Geometry::Geometry(const Gl& gl, const DrawArrays& arrays) : gl_(gl), arrays_(ar
   create_attribute(Normals, arrays.normals, 3, GL_FLOAT, GL_FALSE);
   create_attribute(Uvs, arrays.uvs, 2, GL_FLOAT, GL_FALSE);
   create_attribute(Colors, arrays.colors, 4, GL_UNSIGNED_BYTE, GL_TRUE);
+  if (const VertexArrays* target = arrays.target; target != nullptr) {
+    create_attribute(TargetPositions, std::span<const glm::vec3>{target->positions}, 3, GL_FLOAT, GL_FALSE);
+    create_attribute(TargetNormals, std::span<const glm::vec3>{target->normals}, 3, GL_FLOAT, GL_FALSE);
+    create_attribute(TargetUvs, std::span<const glm::vec2>{target->uvs}, 2, GL_FLOAT, GL_FALSE);
+    create_attribute(TargetColors, std::span<const glm::u8vec4>{target->colors}, 4, GL_UNSIGNED_BYTE, GL_TRUE);
+  }
   gl_.bind_buffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[Indices]);
   gl_.buffer_data(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(arrays.indices.size_bytes()), arrays.indices.data(),
                   GL_DYNAMIC_DRAW);
@@ -144,6 +150,7 @@ void Geometry::bind() const {
   gl_.vertex_attrib_3f(Normals, 0.0F, 0.0F, 1.0F);
   gl_.vertex_attrib_3f(Uvs, 0.0F, 0.0F, 0.0F);
   gl_.vertex_attrib_4f(Colors, 1.0F, 1.0F, 1.0F, 1.0F);
+  gl_.vertex_attrib_4f(TargetColors, 1.0F, 1.0F, 1.0F, 1.0F);
 }
 
 void Geometry::bind_with(std::span<const VertexId> indices) const {

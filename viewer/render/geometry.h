@@ -21,6 +21,8 @@ struct DrawArrays {
   std::span<const std::byte> indices;
   std::uint32_t index_bytes = 4;  ///< 2 or 4
   std::span<const DrawRange> draws;
+  /// Where each vertex travels to as Item::morph grows, arrays of the same lengths; null: nowhere.
+  const VertexArrays* target = nullptr;
 
   [[nodiscard]] VertexId index(std::size_t element) const noexcept;
   [[nodiscard]] std::uint32_t triangle_count() const noexcept;
@@ -62,7 +64,19 @@ class Geometry {
   void bind_with(std::span<const VertexId> indices) const;
 
  private:
-  enum Buffer { Positions, Normals, Uvs, Colors, Indices, Sorted, BufferCount };
+  enum Buffer {
+    Positions,
+    Normals,
+    Uvs,
+    Colors,
+    TargetPositions,
+    TargetNormals,
+    TargetUvs,
+    TargetColors,
+    Indices,
+    Sorted,
+    BufferCount
+  };
   template <class T>
   void create_attribute(Buffer buffer, std::span<const T> values, GLint components, GLenum type, GLboolean normalise);
 

@@ -15,6 +15,7 @@ enum class Coloring : std::uint8_t {
   Materials,   ///< base colours, vertex colours and textures
   Untextured,  ///< base colours without textures
   Lod,         ///< by triangle size: blue where fine, green, yellow, red where coarse
+  Clusters,    ///< a colour for each cluster of a cluster graph
 };
 
 struct Look {

@@ -11,6 +11,19 @@
 
 namespace lodestone::render {
 
+namespace {
+
+std::span<const DrawRange> draws_of(const Item& item) {
+  return item.draws.empty() ? item.geometry->arrays().draws : item.draws;
+}
+
+// Blended where materials are; colours that tell something are opaque.
+bool shows_materials(const Look& look) {
+  return look.coloring == Coloring::Materials || look.coloring == Coloring::Untextured;
+}
+
+}  // namespace
+
 Renderer::SurfaceProgram::SurfaceProgram(Program p)
     : program(std::move(p)),
       to_eye(program.uniform("to_eye")),
@@ -23,7 +36,8 @@ Renderer::SurfaceProgram::SurfaceProgram(Program p)
       wire_px(program.uniform("wire_px")),
       lod_colors(program.uniform("lod_colors")),
       model_size_m(program.uniform("model_size_m")),
-      share(program.uniform("share")) {}
+      share(program.uniform("share")),
+      morph(program.uniform("morph")) {}
 
 Result<Renderer> Renderer::create(const Gl& gl) {
   auto background = Program::create(gl, picture_vertex_shader, nullptr, background_fragment_shader);
@@ -93,7 +107,7 @@ void Renderer::draw(const Frame& frame, const View& view, const Box& bounds, std
     set_item(surface, item, to_eye);
     draw_opaque(surface, item, look);
   }
-  if (!lod_colors) {
+  if (shows_materials(look)) {
     gl_->enable(GL_BLEND);
     gl_->blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl_->depth_mask(GL_FALSE);
@@ -117,6 +131,7 @@ void Renderer::set_item(const SurfaceProgram& program, const Item& item, const g
   gl_->uniform_1i(program.has_normals, item.geometry->arrays().normals.empty() ? 0 : 1);
   gl_->uniform_1f(program.share, item.share);
   gl_->uniform_1f(program.model_size_m, static_cast<float>(std::max(item.size_m, 1e-6)));
+  gl_->uniform_1f(program.morph, item.morph);
 }
 
 void Renderer::set_surface(const SurfaceProgram& program, const Surface& surface, const Look& look,
@@ -137,10 +152,16 @@ void Renderer::draw_opaque(const SurfaceProgram& program, const Item& item, cons
   const DrawArrays& arrays = item.geometry->arrays();
   item.geometry->bind();
   const GLenum type = arrays.index_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-  for (const DrawRange& draw : arrays.draws) {
+  const std::span<const DrawRange> draws = draws_of(item);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const DrawRange& draw = draws[i];
     const Surface& surface = (*item.surfaces)[draw.material];
-    if (draw.index_count == 0 || (surface.transparent && look.coloring != Coloring::Lod)) continue;
+    if (draw.index_count == 0 || (surface.transparent && shows_materials(look))) continue;
     set_surface(program, surface, look, item.surfaces->white());
+    if (!item.draw_colors.empty()) {
+      const glm::vec4& c = item.draw_colors[i];
+      gl_->uniform_4f(program.base_color, c.r, c.g, c.b, c.a);
+    }
     gl_->draw_elements(
         GL_TRIANGLES, static_cast<GLsizei>(draw.index_count), type,
         reinterpret_cast<const void*>(static_cast<std::uintptr_t>(draw.first_index) * arrays.index_bytes));
@@ -151,7 +172,7 @@ void Renderer::draw_blended(const SurfaceProgram& program, const Item& item, con
   const DrawArrays& arrays = item.geometry->arrays();
   const glm::vec3 away{-view[0][2], -view[1][2], -view[2][2]};
   blended_.clear();
-  for (const DrawRange& draw : arrays.draws) {
+  for (const DrawRange& draw : draws_of(item)) {
     if (!(*item.surfaces)[draw.material].transparent) continue;
     for (std::uint32_t i = draw.first_index; i < draw.first_index + draw.index_count; i += 3) {
       const glm::vec3 sum = arrays.positions[arrays.index(i)] + arrays.positions[arrays.index(i + 1)] +

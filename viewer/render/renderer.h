@@ -23,6 +23,10 @@ struct Item {
   glm::dvec3 offset_m{0.0};  ///< where its origin lies in the frame of the view
   double size_m = 1.0;       ///< diagonal of the whole model: the scale of the LOD colours
   float share = 1.0F;        ///< of its pixels, as TilePager::share(): below 1 while it comes, below 0 while it leaves
+  /// How far its vertices have travelled to DrawArrays::target, 0..1; what morph() of clusters.h does.
+  float morph = 0.0F;
+  std::span<const DrawRange> draws;        ///< empty: those of the geometry
+  std::span<const glm::vec4> draw_colors;  ///< per element of `draws`, linear, instead of the materials'; or empty
 };
 
 class Renderer {
@@ -42,7 +46,8 @@ class Renderer {
   struct SurfaceProgram {
     explicit SurfaceProgram(Program p);
     Program program;
-    GLint to_eye, to_clip, base_color, image, alpha_cutoff, has_normals, up, wire_px, lod_colors, model_size_m, share;
+    GLint to_eye, to_clip, base_color, image, alpha_cutoff, has_normals, up, wire_px, lod_colors, model_size_m, share,
+        morph;
   };
   struct BlendedTriangle {
     float depth;  ///< along the line of sight, larger is farther

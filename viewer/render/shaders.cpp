@@ -9,6 +9,11 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec4 color;
+layout(location = 4) in vec3 target_position;
+layout(location = 5) in vec3 target_normal;
+layout(location = 6) in vec2 target_uv;
+layout(location = 7) in vec4 target_color;
+uniform float morph;  // 0: none; 1: all at the target
 uniform mat4 to_eye;
 uniform mat4 to_clip;
 #ifdef EDGES
@@ -21,11 +26,17 @@ out vec3 OUT(normal);
 out vec2 OUT(uv);
 out vec4 OUT(color);
 void main() {
-  vec4 eye = to_eye * vec4(position, 1.0);
+  vec4 eye = to_eye * vec4(mix(position, target_position, morph), 1.0);
+  vec3 turned = normal;
+  if (morph > 0.0) {
+    turned = mix(normal, target_normal, morph);
+    float size = length(turned);
+    turned = size > 1e-6 ? turned / size : target_normal;
+  }
   OUT(eye) = eye.xyz;
-  OUT(normal) = mat3(to_eye) * normal;
-  OUT(uv) = uv;
-  OUT(color) = color;
+  OUT(normal) = mat3(to_eye) * turned;
+  OUT(uv) = mix(uv, target_uv, morph);
+  OUT(color) = mix(color, target_color, morph);
   gl_Position = to_clip * eye;
 }
 )";

@@ -99,8 +99,9 @@ class ClusterStreamer {
 
   /// Takes in what has been loaded, asks for the pages of the groups that the last cut missed, largest error on the
   /// screen first, forgets what is asked for no more, and drops the pages that were used longest ago, and that no group
-  /// of the last cut needs, where the budget is exceeded.
-  void update(const CutScratch& scratch);
+  /// of the last cut needs, where the budget is exceeded. `shown`: groups still on the screen beside those of the cut
+  /// (CutMorph::refined()), whose pages stay as well.
+  void update(const CutScratch& scratch, std::span<const GroupId> shown = {});
 
   [[nodiscard]] std::span<const std::uint8_t> resident() const noexcept;
   /// Null while it is not resident.

@@ -136,9 +136,10 @@ ClusterStreamer::~ClusterStreamer() {
   state_->thread.join();
 }
 
-void ClusterStreamer::update(const CutScratch& scratch) {
+void ClusterStreamer::update(const CutScratch& scratch, std::span<const GroupId> shown) {
   State& s = *state_;
   ++s.updates;
+  for (const GroupId g : shown) s.for_each_page(g, [&](PageId p) { s.last_used[p] = s.updates; });
   for (const GroupId g : scratch.refined()) s.for_each_page(g, [&](PageId p) { s.last_used[p] = s.updates; });
   std::vector<std::pair<PageId, std::unique_ptr<const ClusterPage>>> loaded;
   {
