@@ -33,6 +33,8 @@ class Terrain final : public Verb {
   std::optional<std::string> max_error_;
   std::optional<std::uint32_t> max_zoom_;
   std::uint32_t edges_ = 0;
+  std::string borders_ = "nested";
+  std::optional<std::uint32_t> shared_from_;
   double keep_ratio_ = 0.05;
   std::uint32_t cell_posts_ = 5;
   std::uint32_t cluster_posts_ = 50;
@@ -60,6 +62,10 @@ void Terrain::declare(Arguments& arguments) {
   arguments.number("--keep", keep_ratio_, 1e-4, 1.0, "Random and WLOP points: share of the posts");
   arguments.count("--cell", cell_posts_, 1, tile_intervals, "Grid points: posts along the side of a cell");
   arguments.count("--cluster", cluster_posts_, 1, 65536, "Hierarchy points: most posts of a cluster");
+  arguments.choice("--borders", borders_, {"nested", "shared"},
+                   "shared: one line of vertices on all zooms, so that nothing opens between zooms");
+  arguments.count("--shared-from", shared_from_, 0, max_terrain_zoom,
+                  "Coarsest zoom with shared borders (default: six above the finest)");
   arguments.count("--max-zoom", max_zoom_, 0, max_terrain_zoom, "Finest zoom (default: as dense as the raster)");
   arguments.choice("--nodata", nodata_, {"skip", "fill", "interpolate"}, "What becomes of missing samples");
   arguments.number("--fill", fill_m_, -20000.0, 20000.0, "Height for --nodata fill, outside the raster as well");
@@ -91,6 +97,8 @@ Result<TerrainOptions> Terrain::terrain_options() const {
   for (const auto& [name, method] : methods) {
     if (method_ == name) options.method = method;
   }
+  if (borders_ == "shared") options.borders = TerrainBorders::Shared;
+  if (shared_from_) options.shared_from_zoom = *shared_from_;
   options.points.keep_ratio = {keep_ratio_};
   options.points.cell_posts = {cell_posts_};
   options.points.cluster_posts = {cluster_posts_};

@@ -188,7 +188,8 @@ class TerrainWriter {
       zoom.tolerance_m = pyramid_.tolerance_m(z);
       const auto tiles = static_cast<double>(zoom.tiles);
       for (double* mean : {&zoom.mean_vertices, &zoom.mean_triangles, &zoom.mean_error_m}) *mean /= tiles;
-      if (z > 0) {
+      const bool shared = pyramid_.shares_borders_above(z) && detail_m[z] == 0.0 && detail_m[z - 1] == 0.0;
+      if (z > 0 && !shared) {
         zoom.gap_bound_m = pyramid_.tolerance_m(z) + pyramid_.tolerance_m(z - 1) + detail_m[z] +
                            0.5 * (pyramid_.height_step_m(z) + pyramid_.height_step_m(z - 1));
       }

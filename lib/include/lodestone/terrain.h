@@ -34,6 +34,9 @@
 #include <lodestone/types.h>
 
 namespace lodestone {
+namespace terrain {
+struct SharedBorderOptions;
+}
 
 /// Posts along a tile's side, less one.
 inline constexpr int tile_intervals = 256;
@@ -115,8 +118,20 @@ struct PointSetOptions {
   std::uint32_t feature_edges = 5;
 };
 
+/// How borders of unequal zooms meet.
+enum class TerrainBorders {
+  Nested,  ///< A zoom's border has the vertices of the zoom above and more: few vertices, a gap with a stated bound.
+  Shared,  ///< One line of vertices on all zooms between two limits: no gap between these, more vertices.
+};
+
 struct TerrainOptions {
   TerrainMethod method = TerrainMethod::Greedy;
+  /// Shared: the line is as fine as the finest of these zooms needs it, in steps of height of the coarsest, half of
+  /// which its error may exceed the tolerance by. At most six zooms apart. Where data is missing along a border it is
+  /// nested instead.
+  TerrainBorders borders = TerrainBorders::Nested;
+  std::uint32_t shared_from_zoom = none;  ///< none: as far up from shared_to_zoom as can be
+  std::uint32_t shared_to_zoom = none;    ///< none: the finest zoom
   /// Greatest error in height by zoom, from zoom 0 on. One value: that of the finest zoom, doubled per zoom upwards.
   /// Empty: a sixteenth of the spacing of posts at the equator.
   std::vector<double> max_error_m;
@@ -156,10 +171,11 @@ struct TerrainTile {
   /// Empty, or one byte (all land 0, all water 255), or 256 x 256 of them from the north-west.
   std::vector<std::uint8_t> water;
 
-  double max_error_m = 0.0;      ///< largest difference in height to a post, as decoded
-  double snap_m = 0.0;           ///< heights of this zoom are multiples of it
-  double border_detail_m = 0.0;  ///< along its borders, how far posts of this zoom stand off the zoom above
-  bool placeholder = false;      ///< without data of its own; there only to lead to finer tiles
+  double max_error_m = 0.0;  ///< largest difference in height to a post, as decoded
+  double snap_m = 0.0;       ///< heights of this zoom are multiples of it
+  /// Along its borders, how far posts of this zoom stand off the zoom above; 0 where all are shared with it.
+  double border_detail_m = 0.0;
+  bool placeholder = false;  ///< without data of its own; there only to lead to finer tiles
 
   [[nodiscard]] std::uint32_t vertex_count() const noexcept { return static_cast<std::uint32_t>(u.size()); }
   [[nodiscard]] std::uint32_t triangle_count() const noexcept {
@@ -197,6 +213,10 @@ class TerrainPyramid {
   [[nodiscard]] std::vector<TileId> all_tiles() const;  ///< zoom by zoom from 0
   [[nodiscard]] double tolerance_m(std::uint32_t zoom) const { return zooms_[zoom].tolerance_m; }
   [[nodiscard]] double height_step_m(std::uint32_t zoom) const { return zooms_[zoom].step_m; }
+  /// Whether borders of this zoom are those of the zoom above, where there is data along them.
+  [[nodiscard]] bool shares_borders_above(std::uint32_t zoom) const noexcept {
+    return shared_from_zoom_ != none && zoom > shared_from_zoom_ && zoom <= shared_to_zoom_;
+  }
   [[nodiscard]] const TerrainOptions& options() const noexcept { return options_; }
   /// Of all posts of the finest zoom and the options: tiles are the same where it is.
   [[nodiscard]] std::uint64_t fingerprint() const noexcept { return fingerprint_; }
@@ -218,12 +238,14 @@ class TerrainPyramid {
     std::uint32_t target_edges = 0;
   };
   TerrainPyramid() = default;
-  [[nodiscard]] const TileInfo* find(const TileId& tile) const;
+  [[nodiscard]] terrain::SharedBorderOptions shared_border_options() const;
 
   const HeightSource* source_ = nullptr;
   TerrainOptions options_;
   std::vector<Zoom> zooms_;
   std::uint64_t fingerprint_ = 0;
+  std::uint32_t shared_from_zoom_ = none, shared_to_zoom_ = none;  // none: borders are nested
+  double shared_step_m_ = 0.0;
   float polar_height_m_[2] = {};  // south, north; NaN: no data there
 
   friend class TerrainPlanner;

@@ -32,6 +32,15 @@ struct ChainOptions {
   int divisions = 1;    // a vertex at least every size / divisions posts
 };
 
+// What a chain is made of, by post.
+struct ChainLine {
+  std::array<double, size + 1> post_m{};    // NaN: no data
+  std::array<double, size + 1> place{};     // where a vertex at the post is drawn, in posts
+  std::array<double, size + 1> vertex_m{};  // and how high
+};
+// The chain along a line with data everywhere, from 0 to `size`.
+[[nodiscard]] std::vector<int> divided_chain(const ChainLine& line, const ChainOptions& options);
+
 // Ascending post numbers of the vertices along a side. None where neither tile has a cell with data.
 [[nodiscard]] std::vector<int> border_chain(const TileLattice& lattice, Side side, const ChainOptions& options);
 

@@ -40,11 +40,14 @@ class Greedy {
     made.error = measure(made.tin, lattice_, limit_m_);
     constexpr int most_rounds = 32, alone = 4;
     for (int round = 0; round < most_rounds && !made.error.too_far.empty(); ++round) {
+      bool changed = false;
       for (const TinError::Off& off : made.error.too_far) {
         if (!inside(off.post)) continue;
+        changed = true;
         if (!add(off.post)) heights_[vertex_at_[place_of(off.post)]] -= off.off_m / field_.unit_m();
         if (round >= alone) add_around(off.post);
       }
+      if (!changed) break;
       refine();
       made.tin = result();
       made.error = measure(made.tin, lattice_, limit_m_);
@@ -110,7 +113,10 @@ class Greedy {
     const Post at{vertex.u, vertex.v};
     const std::uint32_t t = triangulation_.locate(at, last_);
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (triangulation_.posts()[triangulation_.corners()[3 * t + k]] == at) return;
+      const std::uint32_t corner = triangulation_.corners()[3 * t + k];
+      if (triangulation_.posts()[corner] != at) continue;
+      heights_[corner] = field_.to_units(vertex.height_m);
+      return;
     }
     last_ = t;
     triangulation_.insert(at, t);

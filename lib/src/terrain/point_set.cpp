@@ -27,6 +27,7 @@ class PointSetTin {
     for (const Tin::Vertex& vertex : border) {
       const Post p{nearest_post(vertex.u), nearest_post(vertex.v)};
       const std::uint32_t id = add({vertex.u, vertex.v}, vertex.height_m);
+      heights_m_[id] = vertex.height_m;  // of a corner, which was there
       if (quantized(p.x) == vertex.u && quantized(p.y) == vertex.v) vertex_at_[place_of(p)] = id;
       others.push_back(p);
     }

@@ -14,6 +14,7 @@
 
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "terrain/shared_borders.h"
 #include "terrain/ticks.h"
 #include "terrain/tile_builder.h"
 
@@ -52,6 +53,7 @@ class TerrainPlanner {
     add_roots(pyramid.zooms_.front().tiles);
     if (Status status = read_poles(pyramid); !status) return status.error();
     for (std::uint32_t z = 0; z <= max_zoom_; ++z) choose_numbers(z, pyramid.zooms_[z]);
+    if (Status status = choose_shared(pyramid); !status) return status.error();
     pyramid.fingerprint_ = fingerprint(pyramid);
     return pyramid;
   }
@@ -237,6 +239,23 @@ class TerrainPlanner {
     numbers.target_edges = targets.empty() ? 0 : targets[std::min<std::size_t>(zoom, targets.size() - 1)];
   }
 
+  [[nodiscard]] Status choose_shared(TerrainPyramid& pyramid) const {
+    if (options_.borders == TerrainBorders::Nested) return Done{};
+    const std::uint32_t to = options_.shared_to_zoom == none ? max_zoom_ : options_.shared_to_zoom;
+    const std::uint32_t from =
+        options_.shared_from_zoom == none ? to - std::min(to, terrain::most_shared_zooms) : options_.shared_from_zoom;
+    if (from > to || to > max_zoom_ || to - from > terrain::most_shared_zooms) {
+      return bad("borders are shared between two zooms of the pyramid that are at most " +
+                 std::to_string(terrain::most_shared_zooms) + " apart");
+    }
+    pyramid.shared_from_zoom_ = from;
+    pyramid.shared_to_zoom_ = to;
+    for (std::uint32_t z = from; z <= to; ++z) {
+      pyramid.shared_step_m_ = std::max(pyramid.shared_step_m_, pyramid.zooms_[z].step_m);
+    }
+    return Done{};
+  }
+
   [[nodiscard]] std::uint64_t fingerprint(const TerrainPyramid& pyramid) const {
     constexpr std::uint64_t version = 2;  // of the tiles that this code makes
     std::uint64_t hash = version;
@@ -257,6 +276,8 @@ class TerrainPlanner {
     for (const double number : {points.radius_posts, points.feature_angle_rad}) add(number);
     for (const std::uint32_t number : {points.iterations, points.feature_edges}) add(number);
     add(options_.volume_weight);
+    add(pyramid.shared_from_zoom_);
+    add(pyramid.shared_to_zoom_);
     add(options_.shape_weight);
     add(std::isnan(options_.sea_level_m) ? std::numeric_limits<double>::infinity() : options_.sea_level_m);
     return hash;
@@ -273,6 +294,14 @@ class TerrainPlanner {
 Result<TerrainPyramid> TerrainPyramid::plan(const HeightSource& source, const TerrainOptions& options,
                                             const Context& context) {
   return TerrainPlanner{source, options, context}.plan();
+}
+
+terrain::SharedBorderOptions TerrainPyramid::shared_border_options() const {
+  const Zoom& finest = zooms_[shared_to_zoom_];
+  return {.from_zoom = shared_from_zoom_,
+          .to_zoom = shared_to_zoom_,
+          .chain = {finest.tolerance_m, shared_step_m_, static_cast<int>(finest.divisions)},
+          .polar_height_m = {polar_height_m_[0], polar_height_m_[1]}};
 }
 
 std::uint64_t TerrainPyramid::tile_count() const noexcept {

@@ -9,6 +9,7 @@
 #include "terrain/edge_collapse.h"
 #include "terrain/globe.h"
 #include "terrain/point_set.h"
+#include "terrain/shared_borders.h"
 
 namespace lodestone {
 
@@ -40,13 +41,24 @@ Status TileBuilder::read_posts() {
 }
 
 // Chains are made of the posts as they are, so that neighbours agree on them whatever else happens to a tile.
-void TileBuilder::plan_borders() {
+Status TileBuilder::plan_borders() {
   const ChainOptions options{zoom_.tolerance_m, zoom_.step_m, static_cast<int>(zoom_.divisions)};
+  const bool shared = pyramid_.shared_from_zoom_ != none && id_.zoom >= pyramid_.shared_from_zoom_ &&
+                      id_.zoom <= pyramid_.shared_to_zoom_;
   for (const Side side : all_sides) {
-    const std::vector<Tin::Vertex> vertices = border_vertices(lattice_, side, options);
+    std::vector<Tin::Vertex> vertices;
+    if (shared) {
+      auto line = shared_border(*pyramid_.source_, id_, side, pyramid_.shared_border_options());
+      if (!line) return line.error();
+      if (*line) vertices = std::move(**line);
+    }
+    if (vertices.empty()) {
+      vertices = border_vertices(lattice_, side, options);
+      detail_m_ = std::max({detail_m_, border_detail_m(lattice_, side), shared ? zoom_.step_m : 0.0});
+    }
     border_.insert(border_.end(), vertices.begin(), vertices.end());
-    detail_m_ = std::max(detail_m_, border_detail_m(lattice_, side));
   }
+  return Done{};
 }
 
 // A tile without a single cell of data gets height 0 where nothing is known, because clients cannot do without it.
@@ -195,7 +207,7 @@ void TileBuilder::put_water(TerrainTile& tile) const {
 Result<TerrainTile> TileBuilder::build() {
   Status status = read_posts();
   if (!status) return status.error();
-  plan_borders();
+  if (Status planned = plan_borders(); !planned) return planned.error();
   fill_placeholder();
   const MeasuredTin made = make_tin();
   TerrainTile tile;

@@ -18,7 +18,7 @@ class TileBuilder {
 
  private:
   [[nodiscard]] Status read_posts();
-  void plan_borders();
+  [[nodiscard]] Status plan_borders();
   void fill_placeholder();
   [[nodiscard]] std::vector<terrain::Post> fixed_posts() const;
   [[nodiscard]] terrain::MeasuredTin make_tin() const;

@@ -61,11 +61,12 @@ struct BorderEdge {
 
 std::vector<BorderEdge> border_of(const TerrainTile& tile, const std::vector<std::uint32_t>& ids,
                                   const std::vector<std::uint16_t>& key) {
-  const auto on_border = [&](std::uint32_t i) { return std::find(ids.begin(), ids.end(), i) != ids.end(); };
+  std::vector<std::uint8_t> on_border(tile.vertex_count());
+  for (const std::uint32_t i : ids) on_border[i] = 1;
   std::vector<BorderEdge> edges;
   for (std::size_t e = 0; e < tile.triangles.size(); ++e) {
     std::uint32_t a = tile.triangles[e], b = tile.triangles[e % 3 == 2 ? e - 2 : e + 1];
-    if (!on_border(a) || !on_border(b)) continue;
+    if (on_border[a] == 0 || on_border[b] == 0) continue;
     if (key[a] > key[b]) std::swap(a, b);
     edges.push_back({key[a], key[b], tile.height_m(a), tile.height_m(b), tile.normals[a], tile.normals[b]});
   }
@@ -221,6 +222,52 @@ TEST_CASE("the gap between borders of unequal zooms is within the stated bound")
   }
   CHECK(most_ratio <= 1.0);
   CHECK(most_ratio > 0.05);
+}
+
+TEST_CASE("shared borders are one line on all zooms: no gap between unequal zooms, none between neighbours") {
+  const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 2};
+  const auto pyramid = TerrainPyramid::plan(source, {.borders = TerrainBorders::Shared, .max_error_m = {200.0}});
+  REQUIRE(pyramid.ok());
+  const Tiles tiles = build_all(*pyramid);
+  check_borders(tiles);
+  double most_gap_m = 0.0;
+  std::size_t compared = 0;
+  for (const auto& [key, tile] : tiles) {
+    CHECK(tile.max_error_m <= pyramid->tolerance_m(tile.id.zoom) + 0.5 * pyramid->height_step_m(0));
+    const auto [zoom, y, x] = key;
+    if (zoom == 0) continue;
+    const TerrainTile& parent = tiles.at({zoom - 1, y / 2, x / 2});
+    struct Border {
+      const std::vector<std::uint32_t>&mine, &above;
+      bool upwards = true;
+    };
+    std::vector<Border> borders;
+    borders.push_back(x % 2 == 0 ? Border{tile.west, parent.west, true} : Border{tile.east, parent.east, true});
+    borders.push_back(y % 2 == 0 ? Border{tile.south, parent.south, false} : Border{tile.north, parent.north, false});
+    for (const Border& border : borders) {
+      const auto place = [&](const TerrainTile& of, std::uint32_t i) { return border.upwards ? of.v[i] : of.u[i]; };
+      const bool second = (border.upwards ? y : x) % 2 != 0;
+      const auto line = [&](const TerrainTile& of, const std::vector<std::uint32_t>& ids, double at) {
+        std::size_t k = 0;
+        while (k + 2 < ids.size() && place(of, ids[k + 1]) < at) ++k;
+        const double a = place(of, ids[k]), b = place(of, ids[k + 1]);
+        return std::lerp(of.height_m(ids[k]), of.height_m(ids[k + 1]), (at - a) / (b - a));
+      };
+      const auto compare = [&](double at) {  // twice a place on the parent, from the tile's end
+        const double gap_m = std::fabs(line(tile, border.mine, at) -
+                                       line(parent, border.above, 0.5 * (at + (second ? quantized_max : 0))));
+        most_gap_m = std::max(most_gap_m, gap_m);
+        ++compared;
+      };
+      for (const std::uint32_t i : border.mine) compare(place(tile, i));
+      for (const std::uint32_t i : border.above) {
+        const double at = 2.0 * place(parent, i) - (second ? quantized_max : 0);
+        if (at >= 0.0 && at <= quantized_max) compare(at);
+      }
+    }
+  }
+  CHECK(compared > 3000);
+  CHECK(most_gap_m < 1e-8);
 }
 
 TEST_CASE("water is where all is at or below the sea") {
