@@ -40,11 +40,18 @@ Status TileBuilder::read_posts() {
   return status;
 }
 
+bool TileBuilder::shares_borders() const {
+  return pyramid_.shared_from_zoom_ != none && id_.zoom >= pyramid_.shared_from_zoom_ &&
+         id_.zoom <= pyramid_.shared_to_zoom_;
+}
+
+// Corners are of shared and of other borders at once, so all have one step.
+double TileBuilder::border_step_m() const { return shares_borders() ? pyramid_.shared_step_m_ : zoom_.step_m; }
+
 // Chains are made of the posts as they are, so that neighbours agree on them whatever else happens to a tile.
 Status TileBuilder::plan_borders() {
-  const ChainOptions options{zoom_.tolerance_m, zoom_.step_m, static_cast<int>(zoom_.divisions)};
-  const bool shared = pyramid_.shared_from_zoom_ != none && id_.zoom >= pyramid_.shared_from_zoom_ &&
-                      id_.zoom <= pyramid_.shared_to_zoom_;
+  const bool shared = shares_borders();
+  const ChainOptions options{zoom_.tolerance_m, border_step_m(), static_cast<int>(zoom_.divisions)};
   for (const Side side : all_sides) {
     std::vector<Tin::Vertex> vertices;
     if (shared) {
@@ -85,7 +92,7 @@ void TileBuilder::fill_placeholder() {
   for (float& height_m : lattice_.heights()) {
     if (std::isnan(height_m)) height_m = 0.0F;
   }
-  for (const Post p : more) border_.push_back(border_vertex(lattice_, p, zoom_.step_m));
+  for (const Post p : more) border_.push_back(border_vertex(lattice_, p, border_step_m()));
 }
 
 std::vector<Post> TileBuilder::fixed_posts() const {

@@ -175,15 +175,19 @@ TEST_CASE("tiles with voids leave them out and still share their borders") {
                                                                     : test::ranges_m(longitude, latitude);
   };
   const FormulaHeights source{holed, {5.0, 36.0, 33.0, 52.0}, 4};
-  const TerrainMethod method =
-      GENERATE(TerrainMethod::Greedy, TerrainMethod::PointsHierarchy, TerrainMethod::PointsWlop);
-  const auto pyramid = TerrainPyramid::plan(source, {.method = method, .max_error_m = {30.0}});
+  const bool points = GENERATE(false, true), shared = GENERATE(false, true);
+  const TerrainOptions options{.method = points ? TerrainMethod::PointsWlop : TerrainMethod::Greedy,
+                               .borders = shared ? TerrainBorders::Shared : TerrainBorders::Nested,
+                               .shared_from_zoom = 1,
+                               .max_error_m = {30.0},
+                               .points = {.keep_ratio = {0.02}, .iterations = 5}};
+  const auto pyramid = TerrainPyramid::plan(source, options);
   REQUIRE(pyramid.ok());
   const Tiles tiles = build_all(*pyramid);
   check_borders(tiles);
   for (const auto& [key, tile] : tiles) {
     check_tile(tile);
-    if (method == TerrainMethod::Greedy)
+    if (!points && !shared)
       CHECK(tile.max_error_m <= 30.0 * std::exp2(4 - static_cast<int>(tile.id.zoom)) + 0.5 * tile.snap_m);
     const GeoBox box = bounds_of(tile.id);
     for (std::uint32_t i = 0; i < tile.vertex_count() && !tile.placeholder; ++i) {
