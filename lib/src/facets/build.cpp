@@ -9,10 +9,12 @@
 #include <array>
 #include <optional>
 #include <queue>
+#include <set>
 
 #include <lodestone/repair.h>
 
 #include "facets/block.h"
+#include "facets/crossing.h"
 #include "facets/facet_mesh.h"
 #include "facets/judge.h"
 #include "facets/openings.h"
@@ -31,6 +33,7 @@ constexpr double last_share = 1e-2;  // of (area * diagonal^2): beyond it the bl
 constexpr std::uint32_t rounds_per_price = 4;
 constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
 constexpr std::size_t few_neighbours = 24;    // with more it is looked at again only when the others are done
+constexpr double free_cost = 1e-9;            // m^4; what slides within its plane cuts through nothing
 constexpr double most_gone = 4.0;             // faces that a slide takes; a few take more
 
 class Builder {
@@ -43,7 +46,8 @@ class Builder {
         moved_(mesh_),
         planner_(mesh_),
         parts_(mesh_),
-        block_(mesh_) {}
+        block_(mesh_),
+        crossings_(mesh_, parts_) {}
 
   progressive::EditLog run(FacetShiftReport& report);
 
@@ -71,6 +75,7 @@ class Builder {
   bool close_openings(double price);
   void offer_around(std::uint32_t point);
   bool offer_later();
+  [[nodiscard]] bool cuts_through();
   bool become_block();
   [[nodiscard]] std::string why_no_block() const;
   [[nodiscard]] bool done() const {
@@ -86,6 +91,8 @@ class Builder {
   Planner planner_;
   PartFinder parts_;
   Block block_;
+  CrossingFinder crossings_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> refused_;  // slides, at this price
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
   std::array<std::vector<Known>, 2> known_;  // per direction and surface
@@ -112,6 +119,7 @@ void Builder::offer(std::uint32_t point) {
     for (const std::uint32_t q : mesh_.faces[f].point) {
       if (q == point || std::find(tried.begin(), tried.end(), q) != tried.end()) continue;
       tried.push_back(q);
+      if (!refused_.empty() && refused_.contains({point, q})) continue;
       const Verdict v = judge_slide(mesh_, moved_, {point, q, mesh_.place[q]}, most_gone * best.key);
       if (!v.allowed || v.error_m > options_.max_error_m || v.key() > best.key) continue;
       const double length = glm::length(mesh_.at(q) - mesh_.at(point));
@@ -139,6 +147,13 @@ void Builder::offer_around(std::uint32_t point) {
   }
 }
 
+// Of the moves that were judged last.
+bool Builder::cuts_through() {
+  crossings_.update(mesh_.touched);
+  mesh_.touched.clear();
+  return crossings_.makes_crossing(moved_);
+}
+
 bool Builder::offer_later() {
   if (later_.empty()) return false;
   std::sort(later_.begin(), later_.end());
@@ -164,6 +179,11 @@ void Builder::slide_points(double price) {
       continue;
     }
     moved_.set({&move, 1});
+    if (v.cost > free_cost && cuts_through()) {
+      refused_.insert({e.point, e.onto});
+      later_.push_back(e.point);
+      continue;
+    }
     apply(mesh_, moved_, v.error_m, log_);
     ++(v.tilts ? report_.tilting_collapses : report_.points_merged);
     offer_around(e.onto);
@@ -213,7 +233,7 @@ bool Builder::shift_planes(double price) {
     const Plan plan = planner_.plan(offer.surface, offer.direction);
     if (plan.moves.empty()) continue;
     const Verdict v = judge_shift(mesh_, moved_, plan.moves);
-    if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m) continue;
+    if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m || cuts_through()) continue;
     apply(mesh_, moved_, v.error_m, log_);
     ++report_.shifts;
     any = true;
@@ -301,6 +321,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   const double last_price = last_share * area * diagonal * diagonal;
   for (double price = first_price; price <= last_price && !done(); price *= price_step) {
     bool any = true;
+    for (const auto& [point, onto] : refused_) later_.push_back(point);
+    refused_.clear();
     // Before points slide: a window goes whole, or its outline frays.
     while (!done() && close_openings(price)) continue;
     for (std::uint32_t round = 0; round < rounds_per_price && any && !done(); ++round) {
@@ -308,6 +330,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
       any = shift_planes(price);
     }
     if (!done()) vanish_parts(price);
+    crossings_.start();
+    mesh_.touched.clear();
     context_.report("facet shift",
                     1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
   }

@@ -197,6 +197,8 @@ class Editor {
   }
 
   void relink(float error_m) {
+    mesh_.touched.insert(mesh_.touched.end(), dead_.begin(), dead_.end());
+    mesh_.touched.insert(mesh_.touched.end(), alive_.begin(), alive_.end());
     for (const FaceId f : dead_) {
       for (const std::uint32_t p : mesh_.faces[f].point) {
         std::erase(mesh_.faces_of[p], f);
@@ -325,6 +327,7 @@ void apply(FacetMesh& mesh, Moved& moved, double error_m, progressive::EditLog& 
 void vanish(FacetMesh& mesh, std::span<const FaceId> faces, double error_m, progressive::EditLog& log) {
   log.begin(static_cast<float>(error_m));
   std::vector<VertexId> vertices;
+  mesh.touched.insert(mesh.touched.end(), faces.begin(), faces.end());
   for (const FaceId f : faces) {
     Face& face = mesh.faces[f];
     face.live = false;

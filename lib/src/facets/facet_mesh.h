@@ -43,6 +43,7 @@ struct FacetMesh {
   std::vector<double> material_area_m2;            // of the source
   std::uint32_t live_faces = 0;
   std::vector<std::uint32_t> live_of_material;
+  std::vector<FaceId> touched;  // moved, redrawn or gone since somebody emptied it
 
   [[nodiscard]] std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(place.size()); }
   [[nodiscard]] glm::dvec3 at(std::uint32_t point) const noexcept { return glm::dvec3{place[point]}; }

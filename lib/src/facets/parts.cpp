@@ -21,6 +21,7 @@ PartFinder::PartFinder(const FacetMesh& mesh)
     : mesh_(mesh), around_(mesh), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
   distance_m_.resize(mesh.point_count());
   measured_.resize(mesh.point_count(), 0);
+  split();
 }
 
 // Faces that hang together by points.

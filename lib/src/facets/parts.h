@@ -27,6 +27,10 @@ class PartFinder {
   // the cheapest first.
   [[nodiscard]] std::vector<Part> find(double limit_m, double price);
 
+  // The faces that hang together with this one, as of the last call of find() or of the start.
+  [[nodiscard]] const std::vector<FaceId>& part_of(FaceId f) const { return parts_[part_of_[f]]; }
+  [[nodiscard]] bool same_part(FaceId f, FaceId g) const { return part_of_[f] == part_of_[g]; }
+
  private:
   struct Known {
     std::uint64_t state = 0;  // of its faces when it was measured

@@ -29,6 +29,7 @@ class Painter {
 
  private:
   void unlink(FaceId f) {
+    mesh_.touched.push_back(f);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t p = mesh_.faces[f].point[k];
       std::erase(mesh_.faces_of[p], f);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 
+#include "crossings.h"
 #include "shapes.h"
 #include "walls.h"
 
@@ -54,7 +55,7 @@ TEST_CASE("houses of every roof keep their planes and stay closed") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
     HouseOptions options;
-    options.triangles = 10'000;
+    options.triangles = 6000;
     options.roof = roof;
     options.pixels = Pixels::Skip;
     const auto house = generate_house(options);
@@ -68,6 +69,29 @@ TEST_CASE("houses of every roof keep their planes and stay closed") {
       CAPTURE(ratio);
       CHECK(inspect(level).boundary_edges == 0);
       CHECK(normal_deviation_rad(*house, level) < glm::radians(ratio < 0.1 ? 0.7 : 0.1));
+    }
+  }
+}
+
+TEST_CASE("closed houses stay closed and pass through themselves at no level") {
+  for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
+    CAPTURE(static_cast<int>(roof));
+    HouseOptions options;
+    options.triangles = 2000;
+    options.roof = roof;
+    options.pixels = Pixels::Skip;
+    const auto house = generate_house(options);
+    REQUIRE(house.ok());
+    REQUIRE(test::count_crossings(*house) == 0);
+    const auto built = build_by_facet_shift(*house);
+    REQUIRE(built.ok());
+    constexpr std::uint32_t steps = 32;
+    for (std::uint32_t i = 0; i <= steps; ++i) {
+      const Level level = built->model->record_count() * i / steps;
+      CAPTURE(level);
+      const Mesh shown = built->model->extract(level);
+      CHECK(inspect(shown).boundary_edges == 0);
+      CHECK(test::count_crossings(shown) == 0);
     }
   }
 }
