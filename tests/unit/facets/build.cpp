@@ -55,7 +55,7 @@ TEST_CASE("houses of every roof keep their planes and stay closed") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
     HouseOptions options;
-    options.triangles = 6000;
+    options.triangles = 10'000;
     options.roof = roof;
     options.pixels = Pixels::Skip;
     const auto house = generate_house(options);
@@ -85,7 +85,7 @@ TEST_CASE("closed houses stay closed and pass through themselves at no level") {
     REQUIRE(test::count_crossings(*house) == 0);
     const auto built = build_by_facet_shift(*house);
     REQUIRE(built.ok());
-    constexpr std::uint32_t steps = 32;
+    constexpr std::uint32_t steps = 20;
     for (std::uint32_t i = 0; i <= steps; ++i) {
       const Level level = built->model->record_count() * i / steps;
       CAPTURE(level);
