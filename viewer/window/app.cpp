@@ -7,12 +7,16 @@
 #include <lodestone/formats.h>
 
 #include "../render/detailed_side.h"
+#include "../render/fly_path.h"
 
 namespace lodestone::render {
 namespace {
 
 // A frame that took longer (a file was loading, the window was hidden) advances motion only by this much.
 constexpr double longest_step_s = 0.25;
+
+// Of a flight over the model.
+constexpr double round_s = 60.0;
 
 Sphere sphere_of(const Box& box) { return {.center = box.center(), .radius_m = box.diagonal_m() * 0.5}; }
 
@@ -50,6 +54,8 @@ App::App(const WindowOptions& options, std::unique_ptr<GlfwWindow> window, std::
       panel_(window_->handle()) {
   look_.wireframe = options.wireframe;
   if (options.lod_colors) look_.coloring = Coloring::Lod;
+  if (options.cluster_colors) look_.coloring = Coloring::Clusters;
+  flies_ = options.fly;
   if (options.file.empty()) {
     message_ = "Drop a model here: .lode, OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...";
   } else {
@@ -62,7 +68,7 @@ Status App::run() {
   auto last = Clock::now();
   while (!window_->closing()) {
     // Without anything that moves the loop idles at a few frames a second until there is input.
-    const bool moving = loader_.busy() || control_.mode == LevelMode::Sweep || still_frames_ < 10;
+    const bool moving = loader_.busy() || control_.mode == LevelMode::Sweep || flies_ || still_frames_ < 10;
     window_->gather_input(moving ? 0.0 : 0.2);
     const auto now = Clock::now();
     const double dt_s = std::min(std::chrono::duration<double>(now - last).count(), longest_step_s);
@@ -70,7 +76,7 @@ Status App::run() {
     if (auto status = take_loaded(); !status) return status;
     if (auto status = fit_frame_to_window(); !status) return status;
     // First, so that it knows whether the mouse is over it.
-    const PanelResult asked = lay_out_panel(camera_.view());
+    const PanelResult asked = lay_out_panel(view());
     use_input(dt_s);
     draw_frame();
     obey(asked);
@@ -85,7 +91,7 @@ Status App::take_loaded() {
   auto result = loader_.take();
   if (!result) return Done{};
   if (!result->ok()) {
-    if (!shown_ && !tiles_ && loader_.file() == options_.file) return result->error();
+    if (!shows_something() && loader_.file() == options_.file) return result->error();
     message_ = to_line(result->error());
     return Done{};
   }
@@ -102,7 +108,7 @@ Status App::take_loaded() {
 Status App::take_plan() {
   control_.plan.reset();
   if (options_.plan.empty() || loader_.file() != options_.file) return Done{};
-  if (!shown_) return Error{ErrorCode::BadArgument, "a plan is for a model, not for a tileset", options_.plan.string()};
+  if (!shown_) return Error{ErrorCode::BadArgument, "a plan is for a progressive model", options_.plan.string()};
   auto plan = read_level_plan(options_.plan);
   if (!plan) return plan.error();
   if (Status fits = check_level_plan(*plan, *shown_->model); !fits) return fits;
@@ -111,9 +117,10 @@ Status App::take_plan() {
 }
 
 void App::show(const Loader::Model& model) {
-  const bool first = !shown_ && !tiles_;
+  const bool first = !shows_something();
   shown_.reset();
   tiles_.reset();
+  clusters_.reset();
   surfaces_ = std::make_unique<Surfaces>(*gl_, model->data());
   shown_ = std::make_unique<Shown>(*gl_, model, static_cast<double>(morph_seconds_), model->record_count());
   control_.attach(*model);
@@ -131,11 +138,34 @@ void App::show(const Loader::Model& model) {
 
 void App::show(const Loader::Tiles& tiles) {
   shown_.reset();
+  clusters_.reset();
   tiles_ = std::make_unique<TileScene>(*gl_, tiles);
   control_.mode = LevelMode::Automatic;
   control_.max_error_px = 1.0F;
   for (const std::string& line : tiles_->status().failures) message_ = line;
   frame(tiles->bounds(), tiles_->yaw_rad());
+}
+
+void App::show(const Loader::Clusters& clusters) {
+  shown_.reset();
+  tiles_.reset();
+  clusters_ = std::make_unique<ClusterScene>(*gl_, clusters);
+  control_.mode = LevelMode::Automatic;
+  control_.max_error_px = 1.0F;
+  frame(clusters_->bounds(), Orbit{}.yaw_rad);
+}
+
+Box App::bounds() const {
+  if (shown_) return shown_->model->bounds();
+  if (tiles_) return tiles_->bounds();
+  return clusters_ ? clusters_->bounds() : Box{};
+}
+
+// From the flight, or from where the mouse has put the camera.
+View App::view() const {
+  const View by_hand = camera_.view();
+  if (!flies_ || !shows_something()) return by_hand;
+  return fly_view(bounds(), flown_s_ / round_s, by_hand.width_px, by_hand.height_px);
 }
 
 // What is new on the screen, from where all of it is seen.
@@ -157,7 +187,10 @@ void App::use_input(double dt_s) {
     if (drag.other) camera_.pan(drag.dx_px, drag.dy_px);
     camera_.zoom(wheel);
   }
-  if (drag.left || drag.other || wheel != 0.0) still_frames_ = 0;
+  if (drag.left || drag.other || wheel != 0.0) {
+    still_frames_ = 0;
+    if (!panel_.wants_mouse()) flies_ = false;
+  }
   if (const auto file = window_->take_dropped_file(); !file.empty()) loader_.start(file);
   use_keys();
   move_on(dt_s);
@@ -165,13 +198,18 @@ void App::use_input(double dt_s) {
 
 // The level, or the tiles, that the camera and the controls ask for.
 void App::move_on(double dt_s) {
+  if (flies_) flown_s_ += dt_s;
+  if (clusters_) {
+    cluster_frame_ = clusters_->update(view(), {.error_px = double(control_.max_error_px)}, dt_s);
+    still_frames_ = cluster_frame_.settled ? still_frames_ + 1 : 0;
+  }
   if (tiles_) {
     tiles_->set_error_px(double(control_.max_error_px));
-    tiles_->update(camera_.view(), dt_s);
+    tiles_->update(view(), dt_s);
     still_frames_ = tiles_->still() ? still_frames_ + 1 : 0;
   }
   if (!shown_) return;
-  control_.drive(shown_->cursor, camera_.view(), dt_s);
+  control_.drive(shown_->cursor, view(), dt_s);
   const StepResult step = shown_->cursor.step({}, dt_s);
   uploaded_kb_ = static_cast<double>(shown_->geometry.update(shown_->cursor)) / 1024.0;
   still_frames_ = step.changed || !step.arrived ? 0 : still_frames_ + 1;
@@ -222,7 +260,11 @@ Status App::fit_frame_to_window() {
 }
 
 PanelResult App::lay_out_panel(const View& view) {
-  PanelState state{.control = control_, .look = look_, .morph_seconds = morph_seconds_, .frame_times = frame_times_};
+  PanelState state{.control = control_,
+                   .look = look_,
+                   .morph_seconds = morph_seconds_,
+                   .frame_times = frame_times_,
+                   .flies = flies_};
   state.title = title_;
   state.message = message_;
   if (loader_.busy()) {
@@ -230,6 +272,8 @@ PanelResult App::lay_out_panel(const View& view) {
     state.loading_fraction = loader_.fraction();
   }
   state.tiles = tiles_.get();
+  state.clusters = clusters_.get();
+  state.cluster_frame = cluster_frame_;
   if (shown_) {
     const Cursor& cursor = shown_->cursor;
     state.cursor = &cursor;
@@ -241,18 +285,13 @@ PanelResult App::lay_out_panel(const View& view) {
 
 void App::draw_frame() {
   const auto start = std::chrono::steady_clock::now();
-  Box bounds;
+  const Box box = bounds();
   std::optional<Item> item;
-  if (shown_) {
-    bounds = shown_->model->bounds();
-    item = Item{.geometry = &shown_->geometry, .surfaces = surfaces_.get(), .size_m = bounds.diagonal_m()};
-  }
+  if (shown_) item = Item{.geometry = &shown_->geometry, .surfaces = surfaces_.get(), .size_m = box.diagonal_m()};
   std::span<const Item> items = item ? std::span<const Item>{&*item, 1} : std::span<const Item>{};
-  if (tiles_) {
-    bounds = tiles_->bounds();
-    items = tiles_->items();
-  }
-  renderer_.draw(*frame_, camera_.view(), bounds, items, look_);
+  if (tiles_) items = tiles_->items();
+  if (clusters_) items = clusters_->items(look_.coloring);
+  renderer_.draw(*frame_, view(), box, items, look_);
   presenter_.present(*frame_, 0);
   panel_.draw();
   gl_->finish();
@@ -261,7 +300,9 @@ void App::draw_frame() {
 
 void App::obey(const PanelResult& asked) {
   if (asked.changed) still_frames_ = 0;
+  if (asked.frame_model) flies_ = false;
   if (asked.frame_model && tiles_) frame(tiles_->bounds(), tiles_->yaw_rad());
+  if (asked.frame_model && clusters_) frame(clusters_->bounds(), Orbit{}.yaw_rad);
   if (!shown_) return;
   if (asked.frame_model) {
     const View view = camera_.view();
@@ -273,7 +314,7 @@ void App::obey(const PanelResult& asked) {
   }
 }
 
-bool App::settled() const { return (shown_ || tiles_) && !loader_.busy() && still_frames_ >= 3; }
+bool App::settled() const { return shows_something() && !loader_.busy() && still_frames_ >= 3; }
 
 Status App::write_screenshot() {
   const FrameSize& size = frame_->size();

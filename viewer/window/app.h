@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "../render/cluster_scene.h"
 #include "../render/frame.h"
 #include "../render/renderer.h"
 #include "../render/tile_scene.h"
@@ -39,6 +40,10 @@ class App {
   [[nodiscard]] Status take_plan();
   void show(const Loader::Model& model);
   void show(const Loader::Tiles& tiles);
+  void show(const Loader::Clusters& clusters);
+  [[nodiscard]] bool shows_something() const { return shown_ || tiles_ || clusters_; }
+  [[nodiscard]] Box bounds() const;
+  [[nodiscard]] View view() const;
   void frame(const Box& bounds, double yaw_rad);
   void move_on(double dt_s);
   void use_input(double dt_s);
@@ -59,12 +64,16 @@ class App {
   Panel panel_;
   Loader loader_;
   std::unique_ptr<Surfaces> surfaces_;
-  std::unique_ptr<Shown> shown_;      ///< a model,
-  std::unique_ptr<TileScene> tiles_;  ///< or a tileset
+  std::unique_ptr<Shown> shown_;            ///< a model,
+  std::unique_ptr<TileScene> tiles_;        ///< or a tileset,
+  std::unique_ptr<ClusterScene> clusters_;  ///< or a cluster graph
+  ClusterFrame cluster_frame_;
   OrbitCamera camera_;
   LevelControl control_;
   FrameTimes frame_times_;
   Look look_;
+  bool flies_ = false;
+  double flown_s_ = 0.0;
   float morph_seconds_ = 0.5F;
   std::string title_;
   std::string message_;

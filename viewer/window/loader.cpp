@@ -14,6 +14,11 @@ Result<Loader::Opened> open(const std::filesystem::path& file, const Context& co
     if (!tiles) return tiles.error();
     return Loader::Opened{std::move(*tiles)};
   }
+  if (is_cluster_file(file)) {
+    auto clusters = ClusterFile::open(file);
+    if (!clusters) return clusters.error();
+    return Loader::Opened{std::move(*clusters)};
+  }
   if (is_model_file(file)) {
     auto model = read_model(file, {}, context);
     if (!model) return model.error();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Opens files beside the frame loop: .lode files and tilesets as they are, anything else is read and made into a model
-// on the fly.
+// Opens files beside the frame loop: .lode files, cluster graphs and tilesets as they are, anything else is read and
+// made into a model on the fly.
 #pragma once
 
 #include <atomic>
@@ -12,6 +12,7 @@
 #include <thread>
 #include <variant>
 
+#include <lodestone/cluster_file.h>
 #include <lodestone/progressive_model.h>
 #include <lodestone/result.h>
 #include <lodestone/tile_loader.h>
@@ -22,7 +23,8 @@ class Loader {
  public:
   using Model = std::shared_ptr<const ProgressiveModel>;
   using Tiles = std::shared_ptr<const TilePyramid>;
-  using Opened = std::variant<Model, Tiles>;
+  using Clusters = std::shared_ptr<const ClusterFile>;
+  using Opened = std::variant<Model, Tiles, Clusters>;
   ~Loader();
 
   /// Gives up what is under way and starts on `file`.

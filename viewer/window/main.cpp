@@ -18,8 +18,9 @@ int main(int argc, char** argv) {
       "Shows a model at any level of detail; any mesh is made into a progressive model on opening.\n"
       "Example: lodestone-view house.lode"};
   double ratio = 0.0;
-  app.add_option("file", options.file,
-                 "model (.lode), tileset.json or mesh (OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...)");
+  app.add_option(
+      "file", options.file,
+      "model (.lode), cluster graph (.lodg), tileset.json or mesh (OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...)");
   const auto* ratio_option =
       app.add_option("--ratio", ratio, "go to this share of the triangles")->check(CLI::Range(0.0, 1.0));
   app.add_option("--width", options.width_px, "window's width in pixels")->check(CLI::Range(200, 16384));
@@ -29,8 +30,10 @@ int main(int argc, char** argv) {
   app.add_flag("--perceptual", options.perceptual, "level by the camera's distance: at most half a pixel off");
   app.add_option("--plan", options.plan,
                  "level by the camera's distance: what 'lodestone distances' measured to be seen");
+  app.add_flag("--fly", options.fly, "fly over the model, round and round");
   app.add_flag("--wireframe", options.wireframe, "draw triangle edges");
   app.add_flag("--lod-colors", options.lod_colors, "colour by triangle size");
+  app.add_flag("--cluster-colors", options.cluster_colors, "a colour for each cluster of a .lodg file");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -61,6 +61,28 @@ void tile_controls(const PanelState& state) {
   if (!status.failures.empty()) ImGui::TextWrapped("%s", status.failures.back().c_str());
 }
 
+void cluster_controls(const PanelState& state) {
+  const ClusterStreamer& streamer = state.clusters->streamer();
+  const ClusterFrame& frame = state.cluster_frame;
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::SliderFloat("##pixels", &state.control.max_error_px, 0.1F, 20.0F, "error at most %.2f pixels",
+                     ImGuiSliderFlags_Logarithmic);
+  ImGui::Text("%u clusters, %llu triangles", frame.clusters, static_cast<unsigned long long>(frame.cut.triangle_count));
+  ImGui::Text("of %llu in %zu clusters",
+              static_cast<unsigned long long>(state.clusters->outline().levels.front().triangles),
+              state.clusters->outline().clusters.size());
+  ImGui::Text("error at most %.2f pixels%s", frame.cut.max_error_px, frame.settled ? "" : ", morphing");
+  ImGui::Text("%.1f MB of pages loaded, %u groups wait", 1e-6 * static_cast<double>(streamer.resident_bytes()),
+              frame.missing_groups);
+  if (streamer.broken_pages() > 0) ImGui::Text("%u pages are broken", streamer.broken_pages());
+  bool clusters = state.look.coloring == Coloring::Clusters;
+  if (ImGui::Checkbox("Colour clusters", &clusters)) {
+    state.look.coloring = clusters ? Coloring::Clusters : Coloring::Materials;
+  }
+  ImGui::SameLine();
+  ImGui::Checkbox("Fly", &state.flies);
+}
+
 void look_controls(const PanelState& state, PanelResult& result) {
   bool textures = state.look.coloring == Coloring::Materials;
   bool lod_colors = state.look.coloring == Coloring::Lod;
@@ -126,7 +148,8 @@ PanelResult Panel::layout(const PanelState& state) {
     level_controls(state);
   }
   if (state.tiles != nullptr) tile_controls(state);
-  if (state.cursor != nullptr || state.tiles != nullptr) {
+  if (state.clusters != nullptr) cluster_controls(state);
+  if (state.cursor != nullptr || state.tiles != nullptr || state.clusters != nullptr) {
     ImGui::Separator();
     look_controls(state, result);
     frame_graph(state);

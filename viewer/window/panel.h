@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "../render/cluster_scene.h"
 #include "../render/options.h"
 #include "../render/tile_scene.h"
 #include "level_control.h"
@@ -18,11 +19,14 @@ struct PanelState {
   Look& look;
   float& morph_seconds;
   const FrameTimes& frame_times;
-  const Cursor* cursor = nullptr;    ///< null while there is no model
-  const TileScene* tiles = nullptr;  ///< null while there is no tileset
-  std::string title;                 ///< file shown
-  std::string message;               ///< what went wrong last, or a hint; may be empty
-  std::string loading;               ///< stage, empty when nothing loads
+  const Cursor* cursor = nullptr;          ///< null while there is no model
+  const TileScene* tiles = nullptr;        ///< null while there is no tileset
+  const ClusterScene* clusters = nullptr;  ///< null while there is no cluster graph
+  ClusterFrame cluster_frame;              ///< of `clusters`
+  bool& flies;
+  std::string title;    ///< file shown
+  std::string message;  ///< what went wrong last, or a hint; may be empty
+  std::string loading;  ///< stage, empty when nothing loads
   float loading_fraction = 0.0F;
   double screen_error_px = 0.0;
   double uploaded_kb = 0.0;

@@ -23,8 +23,10 @@ struct WindowOptions {
   /// most half a pixel off (equation 17 of perception.h).
   bool perceptual = false;
   std::filesystem::path plan;  ///< plan.json of `lodestone distances` for `file`
+  bool fly = false;            ///< the camera flies over the model, round and round, until it is taken by hand
   bool wireframe = false;
   bool lod_colors = false;
+  bool cluster_colors = false;  ///< of a cluster graph
 };
 
 /// Shows the window until it is closed. Errors: Unsupported without a display or OpenGL 3.3; what reading `file` gave

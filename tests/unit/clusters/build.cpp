@@ -72,6 +72,20 @@ TEST_CASE("any model: valid graph, no crack in any cut, borders of all groups ke
   }
 }
 
+TEST_CASE("a thousand cameras and a hundred random labellings find no crack, pages missing or not, morphed or not") {
+  const auto graph = build_cluster_graph(partly_cut(grid(50, 50)), {.max_triangles = 32, .group_clusters = 12});
+  REQUIRE(graph.ok());
+  REQUIRE(graph->levels.size() >= 6);
+  const FaultCounts seen = try_cuts(*graph, 1000, 17);
+  CHECK(seen.cracks == 0);
+  CHECK(seen.morphed_cracks == 0);
+  CHECK(seen.different_cuts > 50);
+  const FaultCounts labelled = try_labellings(*graph, 100, 18);
+  CHECK(labelled.cracks == 0);
+  CHECK(labelled.morphed_cracks == 0);
+  CHECK(labelled.different_cuts > 20);
+}
+
 TEST_CASE("the leaves are the source, triangle for triangle") {
   for (const NamedMesh& model : models()) {
     INFO(model.name);

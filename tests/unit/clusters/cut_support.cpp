@@ -57,6 +57,50 @@ FaultCounts try_cuts(const ClusterGraph& graph, int cameras, std::uint64_t seed)
   return counts;
 }
 
+// Refined groups, coarse before fine, with what they draw in `cut`.
+static std::vector<GroupId> random_labelling(const LodGraph& graph, Rng& rng, std::vector<NodeId>& cut) {
+  const double share = rng.unit();
+  std::vector<std::uint8_t> is_refined(graph.groups.size(), 0);
+  std::vector<std::uint32_t> refined_parents(graph.groups.size(), 0);
+  std::vector<GroupId> refined;
+  for (GroupId g = 0; g < graph.groups.size(); ++g) {
+    const LodGroup& group = graph.groups[g];
+    if (g > 0 && (refined_parents[g] != group.parent_count || rng.unit() > share)) continue;
+    is_refined[g] = 1;
+    refined.push_back(g);
+    for (std::uint32_t l = group.links.begin; l != group.links.end; ++l) {
+      if (graph.links[l].maker != none) ++refined_parents[graph.links[l].maker];
+    }
+  }
+  cut.clear();
+  for (const GroupId g : refined) {
+    for (std::uint32_t l = graph.groups[g].links.begin; l != graph.groups[g].links.end; ++l) {
+      const LodLink& link = graph.links[l];
+      if (link.maker != none && is_refined[link.maker] != 0) continue;
+      for (NodeId n = link.nodes.begin; n != link.nodes.end; ++n) cut.push_back(n);
+    }
+  }
+  return refined;
+}
+
+FaultCounts try_labellings(const ClusterGraph& graph, int labellings, std::uint64_t seed) {
+  Rng rng{seed};
+  FaultCounts counts;
+  std::vector<NodeId> cut;
+  std::set<std::vector<NodeId>> cuts;
+  std::vector<double> weights(graph.graph.groups.size());
+  const std::vector<std::uint8_t> border = true_border(graph);
+  for (int i = 0; i < labellings; ++i) {
+    const std::vector<GroupId> refined = random_labelling(graph.graph, rng, cut);
+    counts.cracks += find_faults(graph, cut, extract(graph, cut), border).cracks;
+    random_phases(graph.graph, refined, rng, weights);
+    counts.morphed_cracks += find_faults(graph, cut, extract_morphed(graph, cut, weights), border).cracks;
+    cuts.insert(cut);
+  }
+  counts.different_cuts = cuts.size();
+  return counts;
+}
+
 std::vector<NodeId> leaves(const ClusterGraph& graph) {
   std::vector<NodeId> result;
   for (const LodLink& link : graph.graph.links) {

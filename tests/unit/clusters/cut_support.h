@@ -18,6 +18,10 @@ struct FaultCounts {
 // Cuts from random cameras, each at a random error, with all pages and with a random part of them.
 [[nodiscard]] FaultCounts try_cuts(const ClusterGraph& graph, int cameras, std::uint64_t seed);
 
+// The same for random labellings of groups as refined or not, each refined only where all groups that hold what it made
+// are: any cut that is valid at all, whatever errors and bounds say.
+[[nodiscard]] FaultCounts try_labellings(const ClusterGraph& graph, int labellings, std::uint64_t seed);
+
 // The finest cut.
 [[nodiscard]] std::vector<NodeId> leaves(const ClusterGraph& graph);
 

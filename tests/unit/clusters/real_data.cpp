@@ -22,9 +22,10 @@ void require_sound(const Mesh& mesh) {
   CHECK(graph->roots[0].cause.empty());
   CHECK(extract(*graph, leaves(*graph)).triangle_count() == mesh.triangle_count());
   CHECK(changed_border_edges(*graph) == 0);
-  const FaultCounts faults = try_cuts(*graph, 6, 5);
-  CHECK(faults.cracks == 0);
-  CHECK(faults.morphed_cracks == 0);
+  for (const FaultCounts& faults : {try_cuts(*graph, 4, 5), try_labellings(*graph, 2, 6)}) {
+    CHECK(faults.cracks == 0);
+    CHECK(faults.morphed_cracks == 0);
+  }
   CHECK(graph->levels[1].mean_fill >= 115.0);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <viewer/render/camera.h>
+#include <viewer/render/fly_path.h>
 #include <viewer/window/orbit_camera.h>
 
 #include <catch2/catch.hpp>
@@ -74,6 +75,21 @@ TEST_CASE("look_at puts the target in the middle, also straight down") {
     const glm::dvec3 place = projected(view, box, {0.2, 0.1, 0.3});
     CHECK(place.x == Approx(0.0).margin(1e-9));
     CHECK(place.y == Approx(0.0).margin(1e-9));
+  }
+}
+
+TEST_CASE("a flight comes back to where it began, outside of the box, which it always sees") {
+  const Box box{glm::dvec3{-30.0, -10.0, 0.0}, glm::dvec3{30.0, 10.0, 8.0}};
+  for (int i = 0; i < 40; ++i) {
+    const View view = fly_view(box, i / 40.0, 800, 600);
+    const View later = fly_view(box, i / 40.0 + 1.0, 800, 600);
+    CHECK(glm::length(view.eye - later.eye) < 1e-9);
+    CHECK(view.eye.z > box.max.z);
+    const glm::dvec3 at = view.eye + view.forward * ((box.center().z - view.eye.z) / view.forward.z);
+    CHECK(std::abs(at.x) < box.max.x);
+    CHECK(std::abs(at.y) < box.max.y);
+    const View next = fly_view(box, i / 40.0 + 0.001, 800, 600);
+    CHECK(glm::length(next.eye - view.eye) < 0.5);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The window program, driven with mouse and keys on a virtual display, and its own screenshot.
+#include <lodestone/cluster_file.h>
 #include <lodestone/formats.h>
 #include <lodestone/generate.h>
 #include <lodestone/tileset_writer.h>
@@ -99,7 +100,7 @@ TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys re
   CHECK(redness(again) == Approx(redness(fine)).margin(5.0));
 }
 
-TEST_CASE("the window opens a tileset and loads the tiles that its camera needs") {
+TEST_CASE("the window opens a tileset or a cluster graph and loads what its camera needs") {
   if (run("command -v xvfb-run > /dev/null") != 0) {
     WARN("SKIPPED: xvfb-run is missing");
     return;
@@ -108,11 +109,18 @@ TEST_CASE("the window opens a tileset and loads the tiles that its camera needs"
   auto cliff = generate_outcrop({.triangles = 12'000, .textures = 2, .texture_size_px = 128, .seed = 5});
   REQUIRE(cliff);
   REQUIRE(write_outcrop(*cliff, folder, {.pyramid = {.tile_bytes = 12'000}}));
-  const std::string program = std::string{"xvfb-run -a -s '-screen 0 1024x700x24' "} + LODESTONE_VIEW_PROGRAM + " " +
-                              (folder / "tileset.json").string() + " --width 1000 --height 600 --lod-colors";
-  REQUIRE(run(program + " --screenshot " + (folder / "near.png").string() + " 2> /dev/null") == 0);
+  const auto shown = [&](const std::string& file, const std::string& colors) {
+    const std::string program = std::string{"xvfb-run -a -s '-screen 0 1024x700x24' "} + LODESTONE_VIEW_PROGRAM + " " +
+                                (folder / file).string() + " --width 1000 --height 600 " + colors;
+    REQUIRE(run(program + " --screenshot " + (folder / "near.png").string() + " 2> /dev/null") == 0);
+    return picture(folder / "near.png");
+  };
   // Most of the cliff is fine enough for its distance to be blue and green: the root alone would be red.
-  CHECK(redness(picture(folder / "near.png")) < 0.0);
+  CHECK(redness(shown("tileset.json", "--lod-colors")) < 0.0);
+  const auto graph = build_cluster_graph(*cliff);
+  REQUIRE(graph);
+  REQUIRE(write_cluster_graph(*graph, folder / "cliff.lodg"));
+  CHECK(redness(shown("cliff.lodg", "--lod-colors")) < 0.0);
 }
 
 TEST_CASE("the driver tells a viewer that dies from a display that does") {
