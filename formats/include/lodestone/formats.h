@@ -69,6 +69,8 @@ struct LoadedMesh {
 
 /// Writes OBJ+MTL, PLY or GLB by the name's extension. Textures go beside an OBJ or PLY, inside a GLB.
 /// World coordinates are kept: OBJ and PLY get them in full; GLB carries the origin as a node translation.
+/// Features of faces are groups in an OBJ; in a GLB they are ids of vertices with a table of ids, classes and parents
+/// (EXT_mesh_features, EXT_structural_metadata), for which vertices are split where features meet; PLY has none.
 [[nodiscard]] Status write_mesh(const Mesh& mesh, const std::filesystem::path& file, const Context& context = {});
 
 struct ModelWriteOptions {

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Binary glTF 2.0: one primitive per material over shared vertex arrays, everything in one file. Several levels of one
-// model become one mesh each, that share materials and textures (MSFT_lod).
+// model become one mesh each, that share materials and textures (MSFT_lod). Features of faces become ids of vertices
+// and a table (EXT_mesh_features, EXT_structural_metadata), except in tiles of photographs.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "axes.h"
 #include "gltf_colors.h"
+#include "gltf_metadata.h"
 #include "writers.h"
 
 namespace lodestone {
@@ -26,6 +30,12 @@ enum GltfConstant : int {
 };
 
 constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) & ~std::uint64_t{3}; }
+constexpr std::uint64_t padded_to_8(std::uint64_t bytes) { return (bytes + 7) & ~std::uint64_t{7}; }
+
+std::vector<std::uint8_t> bytes_of(std::span<const std::byte> raw) {
+  const auto* first = reinterpret_cast<const std::uint8_t*>(raw.data());
+  return {first, first + raw.size()};
+}
 
 constexpr const char* webp = "image/webp";
 
@@ -45,7 +55,7 @@ class GlbWriter {
  public:
   // The finest level first; all have the surroundings of the first.
   GlbWriter(std::span<const GltfLevel> levels, GltfLook look) : first_{*levels.front().mesh}, look_{look} {
-    for (const GltfLevel& level : levels) parts_.push_back({level.mesh, {}, false, level.least_coverage});
+    for (const GltfLevel& level : levels) parts_.push_back({level.mesh, nullptr, {}, false, level.least_coverage});
   }
   [[nodiscard]] Status plan(std::vector<Warning>& warnings);
   [[nodiscard]] std::uint64_t total_bytes() const { return 12 + 8 + json_.size() + 8 + binary_bytes_; }
@@ -54,19 +64,29 @@ class GlbWriter {
  private:
   struct Part {
     const Mesh* mesh;
+    std::unique_ptr<FeatureVertices> split;  // where there are features; `mesh` is the one in it then
     std::vector<std::vector<FaceId>> faces;  // by material
     bool short_indices;
     double least_coverage;
   };
+  struct Column {  // of the table; begins at a multiple of 8 bytes
+    std::uint64_t gap;
+    std::vector<std::uint8_t> bytes;
+  };
   int add_view(std::uint64_t size, int target);
   int add_accessor(int view, int type, std::uint64_t count, const char* shape);
   static void plan_faces(Part& part);
-  [[nodiscard]] Json plan_attributes(const Mesh& mesh);
+  void plan_features(std::vector<Warning>& warnings);
+  void plan_table();
+  void add_column(const char* name, const Json& type, std::vector<std::uint8_t> bytes, const StringColumn* strings);
+  int add_metadata(std::vector<std::uint8_t> bytes);
+  [[nodiscard]] Json plan_attributes(const Part& part);
+  [[nodiscard]] Json feature_ids(const Part& part, const std::vector<FaceId>& faces) const;
   [[nodiscard]] Json plan_primitives(const Part& part);
   void plan_levels(Json& node);
   void plan_textures(std::vector<Warning>& warnings);
   [[nodiscard]] Json material_json(const Material& material) const;
-  static void write_vertices(const Mesh& mesh, BlockWriter& out);
+  static void write_vertices(const Part& part, BlockWriter& out);
   static void write_indices(const Part& part, BlockWriter& out);
 
   const Mesh& first_;
@@ -77,6 +97,8 @@ class GlbWriter {
   std::uint64_t binary_bytes_ = 0;
   std::vector<EncodedTexture> images_;
   std::vector<int> texture_ids_;  // -1 for those left out
+  FeatureRows rows_;
+  std::vector<Column> metadata_;
 };
 
 int GlbWriter::add_view(std::uint64_t size, int target) {
@@ -100,8 +122,65 @@ void GlbWriter::plan_faces(Part& part) {
   part.short_indices = mesh.vertex_count() <= restart;
 }
 
-Json GlbWriter::plan_attributes(const Mesh& mesh) {
-  const VertexArrays& v = mesh.vertices;
+// Ids are floats, which count exactly to 2^24: glTF has no 32-bit integers for vertices.
+void GlbWriter::plan_features(std::vector<Warning>& warnings) {
+  if (look_ == GltfLook::Photograph || first_.face_features.empty()) return;
+  rows_ = rows_of(first_);
+  if (rows_.features.size() >= 1U << 24) {
+    warnings.push_back({"more features than glTF can tell apart: they were left out", {}});
+    rows_ = {};
+  }
+  if (rows_.empty()) return;
+  for (Part& part : parts_) {
+    part.split = std::make_unique<FeatureVertices>(split_by_feature(*part.mesh, rows_));
+    part.mesh = &part.split->mesh;
+  }
+  root_["extensionsUsed"].push_back("EXT_mesh_features");
+  root_["extensionsUsed"].push_back("EXT_structural_metadata");
+}
+
+int GlbWriter::add_metadata(std::vector<std::uint8_t> bytes) {
+  const std::uint64_t gap = padded_to_8(binary_bytes_) - binary_bytes_;
+  binary_bytes_ += gap;
+  metadata_.push_back({gap, std::move(bytes)});
+  return add_view(metadata_.back().bytes.size(), 0);
+}
+
+void GlbWriter::add_column(const char* name, const Json& type, std::vector<std::uint8_t> bytes,
+                           const StringColumn* strings) {
+  if (bytes.empty()) return;  // a column of empty strings says nothing
+  Json& metadata = root_["extensions"]["EXT_structural_metadata"];
+  metadata["schema"]["classes"]["feature"]["properties"][name] = type;
+  Json& values = metadata["propertyTables"][0]["properties"][name];
+  values["values"] = add_metadata(std::move(bytes));
+  if (strings != nullptr) values["stringOffsets"] = add_metadata(bytes_of(std::as_bytes(std::span{strings->offsets})));
+}
+
+void GlbWriter::plan_table() {
+  if (rows_.empty()) return;
+  Json& metadata = root_["extensions"]["EXT_structural_metadata"];
+  metadata["schema"] = {{"id", "lodestone"}, {"classes", {{"feature", {{"name", "Feature"}}}}}};
+  metadata["propertyTables"].push_back({{"class", "feature"}, {"count", rows_.features.size()}});
+  const StringColumn ids = column_of(first_, rows_, &Feature::id);
+  const StringColumn classes = column_of(first_, rows_, &Feature::semantic_class);
+  const std::vector<std::int32_t> parents = parents_of(first_, rows_);
+  add_column("id", {{"type", "STRING"}}, ids.bytes, &ids);
+  add_column("class", {{"type", "STRING"}}, classes.bytes, &classes);
+  add_column("parent", {{"type", "SCALAR"}, {"componentType", "INT32"}, {"noData", -1}},
+             bytes_of(std::as_bytes(std::span{parents})), nullptr);
+}
+
+Json GlbWriter::feature_ids(const Part& part, const std::vector<FaceId>& faces) const {
+  std::set<std::uint32_t> seen;
+  for (const FaceId f : faces) seen.insert(part.split->vertex_rows[part.mesh->indices[3 * std::size_t{f}]]);
+  seen.erase(rows_.no_row());
+  if (seen.empty()) return {};
+  Json set{{"featureCount", seen.size()}, {"nullFeatureId", rows_.no_row()}, {"attribute", 0}, {"propertyTable", 0}};
+  return {{"featureIds", Json::array({std::move(set)})}};
+}
+
+Json GlbWriter::plan_attributes(const Part& part) {
+  const VertexArrays& v = part.mesh->vertices;
   const std::uint64_t count = v.size();
   Json attributes;
   glm::vec3 low{std::numeric_limits<float>::infinity()};
@@ -121,11 +200,12 @@ Json GlbWriter::plan_attributes(const Mesh& mesh) {
     root_["accessors"][colors]["normalized"] = true;
     attributes["COLOR_0"] = colors;
   }
+  if (part.split) attributes["_FEATURE_ID_0"] = add_accessor(add_view(4 * count, ArrayBuffer), Float, count, "SCALAR");
   return attributes;
 }
 
 Json GlbWriter::plan_primitives(const Part& part) {
-  const Json attributes = plan_attributes(*part.mesh);
+  const Json attributes = plan_attributes(part);
   Json primitives = Json::array();
   for (std::size_t m = 0; m < part.faces.size(); ++m) {
     if (part.faces[m].empty()) continue;
@@ -133,6 +213,10 @@ Json GlbWriter::plan_primitives(const Part& part) {
     const int view = add_view(count * (part.short_indices ? 2 : 4), ElementArrayBuffer);
     const int indices = add_accessor(view, part.short_indices ? UnsignedShort : UnsignedInt, count, "SCALAR");
     primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", m}});
+    if (!part.split) continue;
+    if (Json ids = feature_ids(part, part.faces[m]); !ids.empty()) {
+      primitives.back()["extensions"]["EXT_mesh_features"] = std::move(ids);
+    }
   }
   return primitives;
 }
@@ -211,6 +295,7 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
   root_["scenes"].push_back({{"nodes", {0}}});
   const bool empty = first_.triangle_count() == 0;
   const glm::dvec3 origin = z_up_to_y_up(first_.origin);
+  plan_features(warnings);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Json node{{"name", "lodestone"}};
     if (origin != glm::dvec3{0.0}) node["translation"] = {origin.x, origin.y, origin.z};
@@ -227,6 +312,7 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
   if (!empty) {
     plan_textures(warnings);
     for (const Material& material : first_.materials) root_["materials"].push_back(material_json(material));
+    plan_table();
   }
   if (binary_bytes_ > 0) root_["buffers"].push_back({{"byteLength", binary_bytes_}});
   json_ = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -237,8 +323,8 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
   return Done{};
 }
 
-void GlbWriter::write_vertices(const Mesh& mesh, BlockWriter& out) {
-  const VertexArrays& v = mesh.vertices;
+void GlbWriter::write_vertices(const Part& part, BlockWriter& out) {
+  const VertexArrays& v = part.mesh->vertices;
   for (std::size_t i = 0; i < v.positions.size() && out.pass(); ++i) out.raw(z_up_to_y_up(v.positions[i]));
   for (std::size_t i = 0; i < v.normals.size() && out.pass(); ++i) {
     glm::vec3 n = z_up_to_y_up(v.normals[i]);
@@ -254,6 +340,10 @@ void GlbWriter::write_vertices(const Mesh& mesh, BlockWriter& out) {
   for (std::size_t i = 0; i < v.colors.size() && out.pass(); ++i) {
     for (int c = 0; c < 3; ++c) out.raw(linear[v.colors[i][c]]);
     out.raw(static_cast<std::uint16_t>(v.colors[i].a * 257));
+  }
+  if (!part.split) return;
+  for (std::size_t i = 0; i < v.positions.size() && out.pass(); ++i) {
+    out.raw(static_cast<float>(part.split->vertex_rows[i]));
   }
 }
 
@@ -286,12 +376,17 @@ void GlbWriter::write(BlockWriter& out) const {
   out.raw(static_cast<std::uint32_t>(binary_bytes_));
   out.text(std::string_view{"BIN\0", 4});
   for (const Part& part : parts_) {
-    write_vertices(*part.mesh, out);
+    write_vertices(part, out);
     write_indices(part, out);
   }
   for (const EncodedTexture& image : images_) {
     out.text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
     out.text(std::string(padded(image.bytes.size()) - image.bytes.size(), '\0'));
+  }
+  for (const Column& column : metadata_) {
+    out.text(std::string(column.gap, '\0'));
+    out.text({reinterpret_cast<const char*>(column.bytes.data()), column.bytes.size()});
+    out.text(std::string(padded(column.bytes.size()) - column.bytes.size(), '\0'));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "axes.h"
 #include "gltf_accessors.h"
 #include "gltf_colors.h"
+#include "gltf_features.h"
 #include "reader.h"
 
 namespace lodestone {
@@ -179,7 +180,7 @@ UvUse uv_use(const tinygltf::ExtensionMap& extensions, int set) {
 class GltfReader {
  public:
   GltfReader(const Input& input, const Model& model, const ReadOptions& options, const Context& context)
-      : input_{input}, model_{model}, options_{options}, context_{context} {}
+      : input_{input}, model_{model}, options_{options}, context_{context}, features_{model, options.max_triangles} {}
   [[nodiscard]] Result<LoadedMesh> read();
 
  private:
@@ -214,6 +215,9 @@ class GltfReader {
   MaterialId plain_ = none;     // for primitives without a material
   // Primitives of one instance often share their vertices.
   std::map<std::string, std::pair<VertexId, std::uint32_t>> shared_;
+  GltfFeatures features_;
+  std::vector<FeatureId> vertex_features_;  // of the primitive being read, if it has any
+  bool split_ = false;                      // vertices were split where features meet
   std::vector<float> floats_;
   std::vector<std::uint32_t> indices_;
 };
@@ -428,7 +432,7 @@ Status GltfReader::add_faces(const tinygltf::Primitive& primitive, VertexId firs
     if (step == 1 && (t[0] == t[1] || t[1] == t[2] || t[0] == t[2])) continue;
     for (const std::uint32_t corner : t) mesh_.indices.push_back(first + corner);
     mesh_.face_materials.push_back(material);
-    mesh_.face_features.push_back(feature);
+    mesh_.face_features.push_back(vertex_features_.empty() ? feature : vertex_features_[t[0]]);
     if (mesh_.face_materials.size() > options_.max_triangles) {
       return too_large(input_, "triangles", mesh_.face_materials.size(), options_.max_triangles);
     }
@@ -463,6 +467,8 @@ Status GltfReader::add_primitive(const tinygltf::Primitive& primitive, const glm
     found = shared_.emplace(key, std::pair{*first, count}).first;
   }
   const bool flipped = glm::determinant(glm::dmat3{to_mesh}) < 0.0;
+  vertex_features_.clear();
+  if (features_.read(primitive, found->second.second, feature, mesh_, warnings_, vertex_features_)) split_ = true;
   return add_faces(primitive, found->second.first, found->second.second, flipped, material, feature);
 }
 
@@ -508,6 +514,7 @@ Result<LoadedMesh> GltfReader::read() {
       mesh_.crs = extras.Get("crs").Get<std::string>();
   }
   remove_unused(mesh_);
+  if (split_) merge_identical_vertices(mesh_);
   LoadedMesh loaded;
   loaded.mesh = std::move(mesh_);
   loaded.info.format = "gltf";

@@ -45,6 +45,9 @@ int main(int argc, char** argv) {
   rich.textures.push_back(texture);
   all.push_back({"rich", rich});
   all.push_back({"large", test::grid(300, 300)});  // needs 32-bit indices
+  rich.features = {{"house", "Building", none}, {"wall", "WallSurface", 0}, {"unused", {}, none}, {"", "Window", 1}};
+  for (FaceId f = 0; f < rich.triangle_count(); ++f) rich.face_features.push_back(f % 4 == 2 ? none : f % 4);
+  all.push_back({"features", rich});
   if (auto done = write_plan(rich, folder); !done) {
     std::fprintf(stderr, "levels: %s\n", to_line(done.error()).c_str());
     return 1;

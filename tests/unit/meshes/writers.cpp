@@ -59,6 +59,38 @@ std::size_t entries(const std::filesystem::path& folder) {
 
 }  // namespace
 
+TEST_CASE("GLB keeps which feature every face belongs to, what it is and what it belongs to") {
+  Mesh mesh = decorated();
+  mesh.features = {{"house", "Building", none}, {"unused", "Window", 0}, {"wall", "WallSurface", 0}, {"", "Door", 2}};
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) mesh.face_features[f] = f % 3 == 0 ? none : 1 + f % 3;
+  const auto file = test::scratch_folder("glb_features") / "mesh.glb";
+  REQUIRE(write_mesh(mesh, file).ok());
+  const auto read = read_mesh(file);
+  REQUIRE(read.ok());
+  CHECK(read.warnings().empty());
+  CHECK(read->mesh.vertex_count() == mesh.vertex_count());
+  REQUIRE(read->mesh.features.size() == 3);  // not the one that nothing belongs to
+  CHECK(read->mesh.features[0].id == "house");
+  CHECK(read->mesh.features[0].parent == none);
+  CHECK(read->mesh.features[1].semantic_class == "WallSurface");
+  CHECK(read->mesh.features[2].parent == 1);
+  // Faces come back in the order of their materials; what a face is, by its corners.
+  const auto kinds_of = [](const Mesh& m) {
+    std::multiset<std::pair<std::string, std::vector<float>>> kinds;
+    for (FaceId f = 0; f < m.triangle_count(); ++f) {
+      std::vector<float> corners;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const glm::vec3 p = m.vertices.positions[m.indices[3 * f + c]];
+        corners.insert(corners.end(), {p.x, p.y, p.z});
+      }
+      const FeatureId feature = m.face_feature(f);
+      kinds.insert({feature == none ? "" : m.features[feature].id + "/" + m.features[feature].semantic_class, corners});
+    }
+    return kinds;
+  };
+  CHECK(kinds_of(read->mesh) == kinds_of(mesh));
+}
+
 TEST_CASE("every family of meshes comes back from OBJ and PLY bit for bit") {
   const auto folder = test::scratch_folder("round_trip");
   for (const auto& [name, mesh] : test::mesh_families()) {
