@@ -30,6 +30,8 @@ class Build final : public Verb {
   std::filesystem::path output_;
   std::string method_ = "auto";
   std::string placement_ = "optimal";
+  std::string interior_ = "keep";
+  std::string order_ = "one-by-one";
   std::string attributes_ = "all";
   bool lock_borders_ = false;
   bool reference_textures_ = false;
@@ -50,6 +52,9 @@ void Build::declare(Arguments& arguments) {
                   "Stop at so many triangles, 0 = as few as possible");
   arguments.length_m("--max-error", max_error_m_, "Stop before the error exceeds this");
   tolerance_.declare(arguments);
+  arguments.choice("--interior", interior_, {"keep", "drop-first"},
+                   "Whether what cannot be seen from outside goes first");
+  arguments.choice("--order", order_, {"one-by-one", "together"}, "Windows of a facade coarsen so");
   arguments.count("--quantize", quantize_bits_, 0, 20, "Bits per coordinate in the file, 0 = lossless");
   arguments.flag("--reference-textures", reference_textures_, "Refer to texture files instead of embedding them");
 }
@@ -89,6 +94,8 @@ Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source,
   };
   if (choose_method(source, session) == "facet-shift") {
     FacetShiftOptions options{.tolerance = tolerance_.value(), .target_triangles = target_triangles_};
+    if (interior_ == "drop-first") options.interior = Interior::DropFirst;
+    if (order_ == "together") options.order = ShiftOrder::Together;
     if (max_error_m_) options.max_error_m = *max_error_m_;
     auto built = build_by_facet_shift(source, options, session.context());
     if (built) report_shifts(built->report, session.report());

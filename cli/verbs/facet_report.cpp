@@ -125,6 +125,7 @@ void report_shifts(const FacetShiftReport& done, Report& report) {
   shifts.set("roofs", done.roofs);
   shifts.set("openings", done.openings);
   shifts.set("closed_t_junctions", done.closed_t_junctions);
+  shifts.set("interior_faces", done.interior_faces);
   shifts.set("shifts", done.shifts);
   shifts.set("openings_flattened", done.openings_flattened);
   shifts.set("openings_filled", done.openings_filled);

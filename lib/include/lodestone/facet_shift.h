@@ -97,12 +97,26 @@ struct FacetGraph {
 /// near 0 for scans and sculpture. What `build --method auto` goes by. O(faces log faces).
 [[nodiscard]] double planar_area_share(const Mesh& mesh, double least_ratio = 1e-4);
 
+/// Whether what cannot be seen from outside goes before anything else.
+enum class Interior : std::uint8_t {
+  Keep,
+  DropFirst,  ///< by sampled visibility, plane by plane; the error counts what can be seen, so these records cost 0
+};
+
+/// How a facade coarsens.
+enum class ShiftOrder : std::uint8_t {
+  OneByOne,  ///< a record a window, a shift: the finest steps
+  Together,  ///< what can be done to the windows of one wall, or to planes of one direction, at one price is one record
+};
+
 struct FacetShiftOptions {
   SurfaceTolerance tolerance;
   /// T-junctions are closed first: a triangle whose open side passes by a point of its neighbour within this distance
   /// is cut there. Surveyed models do not share the points of such sides, and walls in pieces coarsen badly. 0 leaves
   /// the source as it is; metres.
   double t_junction_tolerance_m = 0.001;
+  Interior interior = Interior::Keep;
+  ShiftOrder order = ShiftOrder::OneByOne;
   /// Stop at so many triangles; 0 goes on until nothing is left to do.
   std::uint32_t target_triangles = 0;
   /// Stop before the error exceeds this; metres.
@@ -113,6 +127,7 @@ struct FacetShiftOptions {
 struct FacetShiftReport {
   std::uint32_t surfaces = 0, walls = 0, roofs = 0, openings = 0;
   std::uint32_t closed_t_junctions = 0;  ///< points put into sides of neighbours
+  std::uint32_t interior_faces = 0;      ///< dropped first because they cannot be seen
   std::uint32_t shifts = 0;              ///< planes that moved
   std::uint32_t openings_flattened = 0;  ///< holes of a wall whose window came forward into the wall's plane
   std::uint32_t openings_filled = 0;     ///< flush windows and holes that the wall closed over

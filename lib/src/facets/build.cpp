@@ -16,11 +16,13 @@
 #include "facets/block.h"
 #include "facets/crossing.h"
 #include "facets/facet_mesh.h"
+#include "facets/joiner.h"
 #include "facets/judge.h"
 #include "facets/openings.h"
 #include "facets/outline.h"
 #include "facets/parts.h"
 #include "facets/plan.h"
+#include "facets/visibility.h"
 #include "progressive/values.h"
 
 namespace lodestone {
@@ -66,6 +68,7 @@ class Builder {
   };
 
   void drop_degenerate();
+  void drop_interior();
   void offer(std::uint32_t point);
   void slide_points(double price);
   bool shift_planes(double price);
@@ -105,6 +108,17 @@ void Builder::drop_degenerate() {
     log_.begin(0.0F);
     log_.remove_face(f);
     log_.end();
+  }
+}
+
+void Builder::drop_interior() {
+  const std::vector<std::uint8_t> seen = seen_surfaces(*mesh_.source, mesh_.surfaces);
+  if (std::find(seen.begin(), seen.end(), 1) == seen.end()) return;
+  for (std::uint32_t s = 0; s < seen.size() && !done(); ++s) {
+    if (seen[s] != 0) continue;
+    const std::vector<FaceId> faces = mesh_.surface_faces[s];
+    report_.interior_faces += static_cast<std::uint32_t>(faces.size());
+    vanish(mesh_, faces, 0.0, log_);
   }
 }
 
@@ -226,9 +240,19 @@ bool Builder::shift_planes(double price) {
     }
   }
   std::stable_sort(offers.begin(), offers.end(), [](const Offer& a, const Offer& b) { return a.key < b.key; });
+  Joiner joiner{log_, options_.order};
+  const auto way = [&](const Offer& offer) {
+    const glm::dvec3 n = 20.0 * mesh_.surfaces.surfaces[offer.surface].normal;
+    return Joiner::Key{std::lround(n.x), std::lround(n.y), std::lround(n.z),
+                       static_cast<std::int64_t>(offer.direction)};
+  };
+  if (joiner.joins()) {
+    std::stable_sort(offers.begin(), offers.end(), [&](const Offer& a, const Offer& b) { return way(a) < way(b); });
+  }
   bool any = false;
   for (const Offer& offer : offers) {
     if (done()) break;
+    joiner.begin(way(offer));
     planner_.begin_round();  // others may have moved meanwhile: plan anew
     const Plan plan = planner_.plan(offer.surface, offer.direction);
     if (plan.moves.empty()) continue;
@@ -269,8 +293,16 @@ void Builder::vanish_parts(double price) {
 bool Builder::close_openings(double price) {
   bool any = false;
   openings_->update();
-  for (const Opening& opening : openings_->all()) {
+  std::vector<Opening> openings = openings_->all();
+  Joiner joiner{log_, options_.order};
+  const auto facade = [&](const Opening& o) { return Joiner::Key{mesh_.faces[o.wall].surface}; };
+  if (joiner.joins()) {
+    std::stable_sort(openings.begin(), openings.end(),
+                     [&](const Opening& a, const Opening& b) { return facade(a) < facade(b); });
+  }
+  for (const Opening& opening : openings) {
     if (done()) break;
+    joiner.begin(facade(opening));
     const auto job = openings_->job(opening, price, options_.max_error_m);
     if (!job) continue;
     apply(mesh_, job->patch, job->error_m, log_);
@@ -308,6 +340,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     report_.openings += s.kind == SurfaceClass::Opening ? 1 : 0;
   }
   drop_degenerate();
+  if (options_.interior == Interior::DropFirst) drop_interior();
   std::vector<FaceId> live;
   for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
     if (mesh_.faces[f].live) live.push_back(f);

@@ -9,6 +9,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "progressive/record.h"
@@ -34,6 +36,49 @@ void EditLog::end() {
   record.vertices_end = size(vertices_);
   record.corners_end = size(corners_);
   record.moves_end = size(moved_);
+}
+
+void EditLog::join_from(std::uint32_t first) {
+  if (first + 1 >= record_count()) return;
+  const Record before = first == 0 ? Record{} : records_[first - 1];
+  Record joined{};
+  for (std::uint32_t i = first; i < record_count(); ++i) joined.error_m = std::max(joined.error_m, records_[i].error_m);
+
+  // What is gone at the end need not have been changed on the way, and of several changes the last one counts.
+  const std::set<FaceId> gone(faces_.begin() + before.faces_end, faces_.end());
+  std::map<VertexId, VertexId> merged;
+  for (std::size_t i = before.vertices_end; i < vertices_.size(); ++i)
+    merged[vertices_[i].vertex] = vertices_[i].merges_into;
+  std::map<CornerId, VertexId> corners;
+  for (std::size_t i = before.corners_end; i < corners_.size(); ++i) corners[corners_[i].corner] = corners_[i].to;
+  std::map<VertexId, std::size_t> moves;  // where the last value stands
+  for (std::size_t i = before.moves_end; i < moved_.size(); ++i) moves[moved_[i]] = i;
+
+  for (std::size_t i = before.vertices_end; i < vertices_.size(); ++i) {
+    VertexId& onto = vertices_[i].merges_into;
+    for (auto at = merged.find(onto); at != merged.end() && at->second != none && at->second != onto;
+         at = merged.find(onto)) {
+      onto = at->second;
+    }
+  }
+  corners_.resize(before.corners_end);
+  for (const auto& [corner, to] : corners) {
+    if (!gone.contains(corner / 3)) corners_.push_back({corner, to});
+  }
+  const std::vector<std::uint32_t> values(values_.begin() + std::ptrdiff_t{value_words_} * before.moves_end,
+                                          values_.end());
+  moved_.resize(before.moves_end);
+  values_.resize(std::size_t{value_words_} * before.moves_end);
+  for (const auto& [vertex, at] : moves) {
+    if (merged.contains(vertex)) continue;
+    const auto from =
+        values.begin() + std::ptrdiff_t{value_words_} * static_cast<std::ptrdiff_t>(at - before.moves_end);
+    moved_.push_back(vertex);
+    values_.insert(values_.end(), from, from + value_words_);
+  }
+  records_.resize(first);
+  records_.push_back(joined);
+  end();
 }
 
 namespace {

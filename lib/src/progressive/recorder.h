@@ -33,6 +33,8 @@ class EditLog {
   // `words`: value_words() 32-bit words of the new value, in the order position, normal, uv, colour.
   void move_vertex(VertexId vertex, std::span<const std::uint32_t> words);
   void end();
+  // Makes one record of all from number `first` on, with the largest of their errors.
+  void join_from(std::uint32_t first);
 
   [[nodiscard]] std::uint32_t record_count() const noexcept { return static_cast<std::uint32_t>(records_.size()); }
 

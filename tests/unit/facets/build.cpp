@@ -113,5 +113,64 @@ TEST_CASE("building stops at the target, at the error, and when cancelled") {
   CHECK(cancelled.error().code == ErrorCode::Cancelled);
 }
 
+Mesh small_house() {
+  HouseOptions options;
+  options.triangles = 3000;
+  options.pixels = Pixels::Skip;
+  auto house = generate_house(options);
+  REQUIRE(house.ok());
+  return std::move(*house);
+}
+
+TEST_CASE("together, the windows of a facade are one record, and the model ends as before") {
+  const Mesh house = small_house();
+  const auto single = build_by_facet_shift(house);
+  const auto joined = build_by_facet_shift(house, {.order = ShiftOrder::Together});
+  REQUIRE((single.ok() && joined.ok()));
+  check_model(*joined->model, house);
+  const std::uint32_t openings = joined->report.openings_flattened + joined->report.openings_filled;
+  CHECK(openings > 10);
+  CHECK(joined->model->record_count() + openings / 2 < single->model->record_count());
+  CHECK(joined->report.reached_block);
+  CHECK(joined->model->info(0).triangles == single->model->info(0).triangles);
+}
+
+TEST_CASE("rooms that cannot be seen go first, at no error, and nothing else does") {
+  Mesh house = small_house();
+  const std::uint32_t outside = house.triangle_count();
+  const auto room_feature = static_cast<FeatureId>(house.features.size());
+  house.features.push_back({"room", "Room", none});
+  // A closed room in the middle of the body, seen from within.
+  const Mesh cube = test::cube();
+  const Box box = bounds(house);
+  const glm::vec3 middle{0.5F * glm::vec3{box.min + box.max}};
+  const VertexId first = house.vertex_count();
+  for (const glm::vec3& p : cube.vertices.positions) {
+    house.vertices.positions.push_back({middle.x + p.x, middle.y + p.y, float(box.min.z) + 2.0F + 0.5F * p.z});
+    house.vertices.normals.push_back({0, 0, 1});
+    house.vertices.uvs.push_back({0, 0});
+  }
+  for (FaceId f = 0; f < cube.triangle_count(); ++f) {
+    for (const std::uint32_t k : {0U, 2U, 1U}) house.indices.push_back(first + cube.indices[3 * f + k]);
+    house.face_materials.push_back(0);
+    house.face_features.push_back(room_feature);
+  }
+  const auto rooms_in = [&](const Mesh& mesh) {
+    return std::count(mesh.face_features.begin(), mesh.face_features.end(), room_feature);
+  };
+  // Through the glass of the windows it is seen.
+  CHECK(build_by_facet_shift(house, {.interior = Interior::DropFirst})->report.interior_faces < 12);
+  for (Material& material : house.materials) material.base_color.a = 1.0F;
+  const auto built = build_by_facet_shift(house, {.interior = Interior::DropFirst});
+  REQUIRE(built.ok());
+  check_model(*built->model, house);
+  CHECK(built->report.interior_faces >= 12);
+  CHECK(built->report.interior_faces < outside / 4);
+  const Level level = built->model->level_of_triangles(house.triangle_count() - built->report.interior_faces);
+  CHECK(built->model->error_m(level) == 0.0);
+  CHECK(rooms_in(built->model->extract(level)) == 0);
+  CHECK(rooms_in(built->model->extract(built->model->record_count())) == 12);
+}
+
 }  // namespace
 }  // namespace lodestone
