@@ -113,4 +113,9 @@ int to_exit_code(ErrorCode code) noexcept {
   return exit_code::bad_data;
 }
 
+Error or_resume(const Error& error, const std::filesystem::path& folder) {
+  if (error.code != ErrorCode::Cancelled) return error;
+  return {ErrorCode::Cancelled, "cancelled, the same command with --resume goes on from here", folder.string()};
+}
+
 }  // namespace lodestone::cli

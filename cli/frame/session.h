@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,5 +65,8 @@ inline constexpr int warnings = 3;
 inline constexpr int cancelled = 4;
 }  // namespace exit_code
 [[nodiscard]] int to_exit_code(ErrorCode code) noexcept;
+
+// What a verb that can go on with its folder returns when writing failed: tells how, if it was only cancelled.
+[[nodiscard]] Error or_resume(const Error& error, const std::filesystem::path& folder);
 
 }  // namespace lodestone::cli

@@ -123,7 +123,7 @@ Status Outcrop::run(Session& session) {
   if (!loaded) return loaded.error();
   auto written = write_outcrop(std::move(loaded->mesh), tiles, options(), session.context());
   session.keep(written);
-  if (!written) return written.error();
+  if (!written) return or_resume(written.error(), output_);
   const auto check = check_tileset(tiles / "tileset.json", session.context());
   if (!check) return check.error();
   std::vector<Warning> faults;

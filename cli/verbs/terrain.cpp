@@ -167,7 +167,7 @@ Status Terrain::run(Session& session) {
       .metadata_zooms = metadata_zooms_,
       .attribution = attribution_};
   const auto summary = write_terrain(*pyramid, output_, writing, session.context());
-  if (!summary) return summary.error();
+  if (!summary) return or_resume(summary.error(), output_);
   report(session, *summary, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return Done{};
 }

@@ -558,9 +558,17 @@ class Failures(Contract):
 
 
 class Interruption(Contract):
+    @staticmethod
+    def listens(process):
+        """The program has come to where it handles SIGINT; before, a busy machine may take its time."""
+        caught = re.search(r"(?m)^SigCgt:\s*([0-9a-f]+)", Path(f"/proc/{process.pid}/status").read_text())
+        return bool(caught) and bool(int(caught.group(1), 16) & 1 << (signal.SIGINT - 1))
+
     def interrupt(self, seconds, *words):
         with subprocess.Popen([PROGRAM, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True) as process:
+            while process.poll() is None and not self.listens(process):
+                time.sleep(0.01)
             time.sleep(seconds)
             if process.poll() is not None:
                 return None, 0.0
@@ -581,6 +589,27 @@ class Interruption(Contract):
                 self.assertEqual(code, 4, words)
                 self.assertLess(late, 5.0)
                 self.assertEqual(list(self.scratch.iterdir()), [], words)
+
+
+    def test_ctrl_c_of_a_pyramid_says_how_to_go_on(self):
+        heights = self.scratch / "heights.asc"
+        side = 700
+        rows = (" ".join(str(i * j % 97 + i // 2) for i in range(side)) for j in range(side))
+        heights.write_text(f"ncols {side}\nnrows {side}\nxllcorner 8\nyllcorner 44\ncellsize 0.001\n" + "\n".join(rows))
+        folder = self.scratch / "tiles"
+        words = ("terrain", heights, "-o", folder, "--quiet", "--threads", 1)
+        with subprocess.Popen([PROGRAM, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            while process.poll() is None and not (folder.is_dir() and any(folder.rglob("*.terrain"))):
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 4, said)
+        self.assertRegex(said, r"\Alodestone: [^\n]*tiles: cancelled, [^\n]*--resume[^\n]*\n\Z")
+        self.assertEqual([name for name in folder.rglob("*") if name.suffix not in ("", ".terrain", ".json", ".unfinished")], [])
+        again = self.json(*words, "--resume")
+        self.assertGreater(again["kept_tiles"], 0)
+        self.assertGreater(again["tiles"], again["kept_tiles"])
 
 
 class Threads(Contract):

@@ -255,8 +255,9 @@ void add_ridge_tiles(House& house, const std::array<Point, 2>& ridge, double wid
 
 void add_finial(House& house, const Point& foot, Look look) {
   Part part{.shape = Shape::Spike, .segments = 8, .look = look};
-  part.frame.origin = metres(foot) + glm::dvec3{0.0, 0.0, -0.08};
-  part.size = {0.28, 0.28, 0.95};
+  // Most of the lower cone stands in what carries it: on its tip it would seem to float.
+  part.frame.origin = metres(foot) + glm::dvec3{0.0, 0.0, -0.25};
+  part.size = {0.28, 0.28, 1.1};
   house.parts.list.push_back(part);
 }
 
