@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <lodestone/edge_collapse.h>
-#include <lodestone/facet_shift.h>
+#include <lodestone/auto_build.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "facet_report.h"
 #include "mesh_input.h"
@@ -22,7 +20,7 @@ class Build final : public Verb {
 
  private:
   [[nodiscard]] EdgeCollapseOptions options() const;
-  [[nodiscard]] std::string choose_method(const Mesh& source, Session& session) const;
+  [[nodiscard]] FacetShiftOptions shift_options() const;
   [[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> build(const Mesh& source, Session& session) const;
 
   MeshInput input_;
@@ -71,38 +69,43 @@ EdgeCollapseOptions Build::options() const {
   return options;
 }
 
-// Buildings are planar to 80 % and more, scans and sculpture to less than 20 %.
-constexpr double least_planar_share = 0.6;
-
-std::string Build::choose_method(const Mesh& source, Session& session) const {
-  if (method_ != "auto") return method_;
-  const double share = planar_area_share(source);
-  std::string method = share >= least_planar_share ? "facet-shift" : "edge-collapse";
-  session.remark("method: " + method + ", because " + std::to_string(std::lround(100.0 * share)) +
-                 " % of the area lies in planes");
-  return method;
+FacetShiftOptions Build::shift_options() const {
+  FacetShiftOptions options{.tolerance = tolerance_.value(), .target_triangles = target_triangles_};
+  if (interior_ == "drop-first") options.interior = Interior::DropFirst;
+  if (order_ == "together") options.order = ShiftOrder::Together;
+  if (max_error_m_) options.max_error_m = *max_error_m_;
+  return options;
 }
 
 Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source, Session& session) const {
-  const auto keep = [&](auto& built) -> Result<std::shared_ptr<const ProgressiveModel>> {
+  // The model, and why it is above the target if it is.
+  const auto keep = [&](auto& built, const auto& sentence) -> Result<std::shared_ptr<const ProgressiveModel>> {
     session.keep(built);
     if (!built) return built.error();
     if (target_triangles_ > 0 && built->model->info(0).triangles > target_triangles_) {
-      session.keep({Warning{built->report.sentence, input_.file().string()}});
+      session.keep({Warning{sentence(), input_.file().string()}});
     }
     return built->model;
   };
-  if (choose_method(source, session) == "facet-shift") {
-    FacetShiftOptions options{.tolerance = tolerance_.value(), .target_triangles = target_triangles_};
-    if (interior_ == "drop-first") options.interior = Interior::DropFirst;
-    if (order_ == "together") options.order = ShiftOrder::Together;
-    if (max_error_m_) options.max_error_m = *max_error_m_;
-    auto built = build_by_facet_shift(source, options, session.context());
+  if (method_ == "facet-shift") {
+    auto built = build_by_facet_shift(source, shift_options(), session.context());
     if (built) report_shifts(built->report, session.report());
-    return keep(built);
+    return keep(built, [&] { return built->report.sentence; });
   }
-  auto built = build_by_edge_collapse(source, options(), session.context());
-  return keep(built);
+  if (method_ == "edge-collapse") {
+    auto built = build_by_edge_collapse(source, options(), session.context());
+    return keep(built, [&] { return built->report.sentence; });
+  }
+  auto built =
+      build_automatically(source, {.facet_shift = shift_options(), .edge_collapse = options()}, session.context());
+  if (built) {
+    session.remark("method: " + built->reason);
+    if (built->facet_shift) report_shifts(*built->facet_shift, session.report());
+  }
+  return keep(built, [&] {
+    if (!built->edge_collapse) return built->facet_shift->sentence;
+    return built->edge_collapse->sentence;
+  });
 }
 
 Status Build::run(Session& session) {

@@ -21,6 +21,7 @@ LIB_ARROWS = {
     "image": {"base"},
     "perception": {"base", "geometry", "mesh", "metrics"},
     "facets": {"base", "geometry", "mesh", "progressive"},
+    "mixed": {"base", "mesh", "progressive", "collapse", "facets"},
     "partition": {"base", "geometry", "mesh"},
     "graph": {"base"},
     "clusters": {"base", "geometry", "mesh", "collapse", "partition", "graph"},

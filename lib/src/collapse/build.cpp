@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/edge_collapse.h>
 
+#include "collapse/build_log.h"
 #include "collapse/engine.h"
 #include "progressive/recorder.h"
 
@@ -35,14 +36,20 @@ class LogSink final : public collapse::Sink {
 
 }  // namespace
 
+progressive::EditLog collapse::collapse_log(const Mesh& source, const EdgeCollapseOptions& options,
+                                            const Context& context, CollapseReport& report) {
+  LogSink sink{source};
+  report = run(source, options, context, sink);
+  return sink.take();
+}
+
 Result<EdgeCollapseResult> build_by_edge_collapse(const Mesh& mesh, const EdgeCollapseOptions& options,
                                                   const Context& context) {
   if (Status status = collapse::check(mesh, options); !status.ok()) return status.error();
-  LogSink sink{mesh};
   EdgeCollapseResult result;
-  result.report = collapse::run(mesh, options, context, sink);
+  progressive::EditLog log = collapse::collapse_log(mesh, options, context, result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
-  auto model = ProgressiveModel::from_data(progressive::record(mesh, sink.take(), "edge-collapse"));
+  auto model = ProgressiveModel::from_data(progressive::record(mesh, std::move(log), "edge-collapse"));
   if (!model.ok()) return model.error();
   result.model = std::move(model).value();
   return result;

@@ -14,6 +14,7 @@
 #include <lodestone/repair.h>
 
 #include "facets/block.h"
+#include "facets/build_log.h"
 #include "facets/crossing.h"
 #include "facets/facet_mesh.h"
 #include "facets/joiner.h"
@@ -378,6 +379,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   return std::move(log_);
 }
 
+}  // namespace
+
 // The coarsest levels within the positional accuracy that CityGML 2.0 asks of its LoD3, LoD2 and LoD1; but a block is
 // what it calls LoD1.
 void name_levels(ModelData& data, bool reached_block) {
@@ -392,7 +395,15 @@ void name_levels(ModelData& data, bool reached_block) {
   if (reached_block) data.named_levels.push_back({"block", 0});
 }
 
-}  // namespace
+progressive::EditLog shift_log(Mesh& source, const FacetShiftOptions& options, const Context& context,
+                               FacetShiftReport& report) {
+  report.closed_t_junctions = repair(source, {.remove_degenerate = false,
+                                              .remove_duplicates = false,
+                                              .t_junction_tolerance_m = options.t_junction_tolerance_m})
+                                  .closed_t_junctions;
+  return Builder{source, options, context}.run(report);
+}
+
 }  // namespace facets
 
 Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShiftOptions& options,
@@ -400,12 +411,7 @@ Result<FacetShiftResult> build_by_facet_shift(const Mesh& mesh, const FacetShift
   if (Status status = validate(mesh); !status.ok()) return status.error();
   FacetShiftResult result;
   Mesh source = mesh;
-  result.report.closed_t_junctions = repair(source, {.remove_degenerate = false,
-                                                     .remove_duplicates = false,
-                                                     .t_junction_tolerance_m = options.t_junction_tolerance_m})
-                                         .closed_t_junctions;
-  facets::Builder builder{source, options, context};
-  progressive::EditLog log = builder.run(result.report);
+  progressive::EditLog log = facets::shift_log(source, options, context, result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
   ModelData data = progressive::record(source, std::move(log), "facet-shift");
   facets::name_levels(data, result.report.reached_block);

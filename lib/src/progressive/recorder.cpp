@@ -81,6 +81,42 @@ void EditLog::join_from(std::uint32_t first) {
   end();
 }
 
+void EditLog::merge(const EditLog& other, FaceId first_face, VertexId first_vertex, std::uint64_t most_faces_gone) {
+  EditLog both{value_words_};
+  const auto take = [&](const EditLog& log, std::uint32_t i, FaceId face, VertexId vertex, float error_m) {
+    const Record from = i == 0 ? Record{} : log.records_[i - 1];
+    const Record& to = log.records_[i];
+    both.begin(error_m);
+    for (std::uint32_t k = from.faces_end; k < to.faces_end; ++k) both.remove_face(face + log.faces_[k]);
+    for (std::uint32_t k = from.vertices_end; k < to.vertices_end; ++k) {
+      const auto [v, into] = log.vertices_[k];
+      both.remove_vertex(vertex + v, into == none ? none : vertex + into);
+    }
+    for (std::uint32_t k = from.corners_end; k < to.corners_end; ++k) {
+      both.repoint(3 * face + log.corners_[k].corner, vertex + log.corners_[k].to);
+    }
+    for (std::uint32_t k = from.moves_end; k < to.moves_end; ++k) {
+      both.move_vertex(vertex + log.moved_[k], {&log.values_[std::size_t{k} * value_words_], value_words_});
+    }
+    both.end();
+  };
+  float mine_m = 0.0F;
+  float other_m = 0.0F;
+  for (std::uint32_t i = 0, k = 0; i < record_count() || k < other.record_count();) {
+    if (both.faces_.size() >= most_faces_gone) break;
+    const float next_mine = i < record_count() ? std::max(mine_m, records_[i].error_m) : 0.0F;
+    const float next_other = k < other.record_count() ? std::max(other_m, other.records_[k].error_m) : 0.0F;
+    if (k == other.record_count() || (i < record_count() && next_mine <= next_other)) {
+      mine_m = next_mine;
+      take(*this, i++, 0, 0, mine_m);
+    } else {
+      other_m = next_other;
+      take(other, k++, first_face, first_vertex, other_m);
+    }
+  }
+  *this = std::move(both);
+}
+
 namespace {
 
 constexpr double error_step_ratio = 1.0019;

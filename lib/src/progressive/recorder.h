@@ -35,6 +35,10 @@ class EditLog {
   void end();
   // Makes one record of all from number `first` on, with the largest of their errors.
   void join_from(std::uint32_t first);
+  // Takes in the records of another log, which is about other faces and vertices: their numbers begin at `first_face`
+  // and `first_vertex` here. By ascending error, its own first, each log in its own order; no more records once
+  // `most_faces_gone` are gone.
+  void merge(const EditLog& other, FaceId first_face, VertexId first_vertex, std::uint64_t most_faces_gone);
 
   [[nodiscard]] std::uint32_t record_count() const noexcept { return static_cast<std::uint32_t>(records_.size()); }
 
