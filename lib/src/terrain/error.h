@@ -35,6 +35,11 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept {  // 
   return a >= 0 ? a / b : -((-a + b - 1) / b);
 }
 
+// Whether no post that a counter-clockwise triangle covers is off by more. Quick: posts that are outside by less than a
+// millionth may be asked as well, none that it covers is left out.
+[[nodiscard]] bool within(const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c, const TileLattice& lattice,
+                          double limit_m);
+
 // Calls visit(x, y, height) for each post that a counter-clockwise triangle covers; height is the triangle's there, in
 // metres. Post x lies at 32767 x, a vertex at 256 u on the same scale, so what is covered is decided exactly.
 template <class Visit>
