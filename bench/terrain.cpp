@@ -94,6 +94,7 @@ void bench(const std::vector<TileLattice>& tiles, double tolerance_m, TerrainMet
       "{\"method\": \"%s\", \"tolerance_m\": %g, \"tiles\": %zu, \"triangles\": %zu, \"true_error_m\": %.4f, "
       "\"samples_per_second\": %.0f}\n",
       name, tolerance_m, tiles.size(), triangles, worst_m, samples / seconds);
+  std::fflush(stdout);
 }
 
 }  // namespace

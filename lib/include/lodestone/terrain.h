@@ -30,6 +30,7 @@
 #include <vector>
 
 #include <lodestone/context.h>
+#include <lodestone/lod_graph.h>
 #include <lodestone/result.h>
 #include <lodestone/types.h>
 
@@ -251,5 +252,16 @@ class TerrainPyramid {
   friend class TerrainPlanner;
   friend class TileBuilder;
 };
+
+/// A pyramid for select_cut(): a node is a tile, a group the up to four children of one. Places are earth-centred.
+struct TerrainGraph {
+  LodGraph graph;
+  std::vector<TileId> tiles;  ///< per node
+};
+/// Errors of groups are the tolerances of zooms and half a step of height: against the posts of the zoom, so what lies
+/// between these is not in them. `triangle_counts`: in the order of all_tiles(), or empty. O(tiles log tiles).
+/// BadArgument for another number of counts.
+[[nodiscard]] Result<TerrainGraph> terrain_graph(const TerrainPyramid& pyramid,
+                                                 std::span<const std::uint32_t> triangle_counts = {});
 
 }  // namespace lodestone

@@ -143,8 +143,8 @@ class TinCollapse {
     }
   }
 
-  // What was refused may fit once its surroundings have changed: in another pass. By error that would be 2 % fewer
-  // triangles for half as much time again.
+  // What was refused may fit once its surroundings have changed: in another pass. By error that would be up to a
+  // tenth fewer triangles for half as much time again.
   [[nodiscard]] Tin run() {
     const int most_passes = options_.target_edges == 0 ? 1 : 4;
     constexpr std::size_t worth_a_pass = 100;  // one more if one edge in so many went

@@ -274,6 +274,46 @@ TEST_CASE("shared borders are one line on all zooms: no gap between unequal zoom
   CHECK(most_gap_m < 1e-8);
 }
 
+TEST_CASE("a pyramid's graph is valid and cuts show every part of the globe once, finer where the eye is") {
+  const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 3};
+  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {100.0}});
+  REQUIRE(pyramid.ok());
+  const std::vector<std::uint32_t> counts(pyramid->tile_count(), 1000);
+  const auto made = terrain_graph(*pyramid, counts);
+  REQUIRE(made.ok());
+  CHECK(validate(made->graph).ok());
+  CHECK(made->tiles.size() == pyramid->tile_count());
+  View view{.eye = to_ecef_m(0.3, 0.7, 30000.0)};
+  view.forward = -glm::normalize(view.eye);
+  CutScratch scratch;
+  std::vector<NodeId> cut;
+  const CutSummary summary = select_cut(made->graph, view, {.error_px = 1.0, .culling = Culling::None}, scratch, cut);
+  CHECK(summary.triangle_count == 1000 * cut.size());
+  double area = 0.0;
+  std::uint32_t under_eye = 0, coarsest = 9;
+  for (const NodeId node : cut) {
+    const TileId id = made->tiles[node];
+    area += std::exp2(-2.0 * id.zoom);
+    coarsest = std::min(coarsest, id.zoom);
+    const GeoBox box = bounds_of(id);
+    const double longitude_deg = 0.3 / 0.017453292519943295, latitude_deg = 0.7 / 0.017453292519943295;
+    const bool below = box.west_deg <= longitude_deg && longitude_deg < box.east_deg && box.south_deg <= latitude_deg &&
+                       latitude_deg < box.north_deg;
+    if (below) under_eye = id.zoom;
+    // What is drawn lies in its sphere.
+    const Sphere& sphere = made->graph.nodes[node].bounds;
+    for (const double across : {0.0, 0.37, 1.0}) {
+      const double east = std::lerp(box.west_deg, box.east_deg, across) * 0.017453292519943295;
+      const double north = std::lerp(box.south_deg, box.north_deg, 0.61 * across) * 0.017453292519943295;
+      CHECK(glm::distance(to_ecef_m(east, north, 0.0), sphere.center) <= sphere.radius_m);
+    }
+  }
+  CHECK(area == Approx(2.0));
+  CHECK(under_eye == 3);
+  CHECK(coarsest < 3);
+  CHECK(terrain_graph(*pyramid, std::vector<std::uint32_t>(3)).error().code == ErrorCode::BadArgument);
+}
+
 TEST_CASE("water is where all is at or below the sea") {
   const FormulaHeights source{[](double longitude, double) { return longitude - 11.0; }, {0.0, 0.0, 22.5, 11.25}, 4};
   const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {1.0}, .sea_level_m = 0.0});
