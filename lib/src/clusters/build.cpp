@@ -4,7 +4,6 @@
 // its clusters become roots, listed with the cause, and their points stay locked for good, so that nothing cracks
 // later.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include <lodestone/clusters.h>
@@ -26,6 +25,9 @@ using namespace clusters;
 constexpr std::uint32_t block_clusters = 16;  // of the first cut in space
 constexpr std::uint32_t most_failures = 3;    // of a cluster's groups, then it is a root
 constexpr std::uint32_t most_levels = 64;
+// Rounds of so few groups try both ways: near the top handles and narrow places hold everything up, and it may be
+// better to let surfaces touch there. It costs little to see which.
+constexpr std::size_t few_groups = 4;
 
 class Builder {
  public:
@@ -138,12 +140,7 @@ class Builder {
     const Grouping grouping = group_clusters(live_, ended_, ground_, options_.group_clusters);
     report_level(static_cast<std::uint32_t>(grouping.groups.size()), last_error_m_);
     const Work work{source_, ground_, live_, grouping, options_, diagonal_m_};
-    std::vector<GroupResult> results(grouping.groups.size());
-    std::atomic<std::size_t> done{0};
-    parallel_for_each(grouping.groups.size(), 1, context_, [&](std::size_t i) {
-      results[i] = simplify_group(work, grouping.groups[i], failures_of(grouping.groups[i]), context_);
-      ++done;
-    });
+    std::vector<GroupResult> results = simplified(work);
     if (context_.cancelled()) return;
     const Live before = std::move(live_);
     live_ = {};
@@ -156,6 +153,23 @@ class Builder {
       results[i] = {};
     }
     context_.report("clusters", 1.0 - static_cast<double>(live_.faces.size()) / total_);
+  }
+
+  [[nodiscard]] std::vector<GroupResult> simplified(const Work& work) const {
+    const std::vector<Group>& groups = work.grouping.groups;
+    std::vector<GroupResult> careful(groups.size());
+    std::vector<GroupResult> free(groups.size() <= few_groups ? groups.size() : 0);
+    parallel_for_each(careful.size() + free.size(), 1, context_, [&](std::size_t i) {
+      const Group& group = groups[i % groups.size()];
+      GroupResult& result = i < groups.size() ? careful[i] : free[i - groups.size()];
+      const auto scruples = i < groups.size() ? collapse::Scruples::UntilStuck : collapse::Scruples::None;
+      result = simplify_group(work, group, failures_of(group), scruples, context_);
+    });
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const bool better = free[i].reduced && (!careful[i].reduced || free[i].error_m < careful[i].error_m);
+      if (better) careful[i] = std::move(free[i]);
+    }
+    return careful;
   }
 
   [[nodiscard]] std::uint32_t failures_of(const Group& group) const {

@@ -26,8 +26,6 @@ constexpr double pass_quota = 0.2;
 constexpr double first_limit = 0.75;
 constexpr double last_limit = 0.95;
 constexpr int attempts = 4;
-// Rounds with so few groups try both ways.
-constexpr std::size_t few_groups = 4;
 
 // Takes the engine's records: which vertices merged, what moved.
 class GroupSink final : public collapse::Sink {
@@ -420,14 +418,9 @@ class Job {
 
 }  // namespace
 
-GroupResult simplify_group(const Work& work, const Group& group, std::uint32_t failures, const Context& context) {
-  GroupResult careful = Job{work, group, failures, collapse::Scruples::UntilStuck, context}.run();
-  // Near the top handles and narrow places hold everything up: there it may be better to let surfaces touch. It costs
-  // little to see which.
-  if (work.grouping.groups.size() > few_groups) return careful;
-  GroupResult free = Job{work, group, failures, collapse::Scruples::None, context}.run();
-  const bool better = free.reduced && (!careful.reduced || free.error_m < careful.error_m);
-  return better ? std::move(free) : std::move(careful);
+GroupResult simplify_group(const Work& work, const Group& group, std::uint32_t failures, collapse::Scruples scruples,
+                           const Context& context) {
+  return Job{work, group, failures, scruples, context}.run();
 }
 
 }  // namespace lodestone::clusters

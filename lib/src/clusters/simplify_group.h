@@ -10,6 +10,7 @@
 
 #include "clusters/group.h"
 #include "clusters/live.h"
+#include "collapse/engine.h"
 
 namespace lodestone::clusters {
 
@@ -40,6 +41,6 @@ struct GroupResult {
 
 // After `failures` of its clusters less is demanded.
 [[nodiscard]] GroupResult simplify_group(const Work& work, const Group& group, std::uint32_t failures,
-                                         const Context& context);
+                                         collapse::Scruples scruples, const Context& context);
 
 }  // namespace lodestone::clusters
