@@ -19,6 +19,10 @@ using namespace cluster_file;
 constexpr std::size_t largest_cluster_bytes = 255 * (3 * 4 + 2 * 2 + 2 * 4 + 4 + 4) + 255 * 4 * 3;
 constexpr std::size_t open_page_bytes = max_page_bytes - largest_cluster_bytes - 16 * column_count;
 
+// Never inlined: g++ 12 at -O3 leaves out a rounding to float where it can see that the float becomes a double again
+// (x and y of glm::dvec3{glm::vec3{v}}), and spheres then miss what they enclose by a rounding.
+[[gnu::noinline]] float in_single(double value) { return static_cast<float>(value); }
+
 class Writer {
  public:
   Writer(const ClusterGraph& graph, const ClusterWriteOptions& options, const Context& context)
@@ -170,11 +174,11 @@ class Writer {
 
   // In the precision of the header, and around what a reader will see.
   static Sphere stored_bounds(const glm::dvec3& center, const VertexArrays& decoded) {
-    Sphere sphere{glm::dvec3{glm::vec3{center}}, 0.0};
+    Sphere sphere{{in_single(center.x), in_single(center.y), in_single(center.z)}, 0.0};
     for (const glm::vec3& p : decoded.positions) {
       sphere.radius_m = std::max(sphere.radius_m, glm::length(glm::dvec3{p} - sphere.center));
     }
-    sphere.radius_m = std::nextafter(static_cast<float>(sphere.radius_m * (1.0 + 1e-6)), 3e38F);
+    sphere.radius_m = std::nextafter(in_single(sphere.radius_m * (1.0 + 1e-6)), 3e38F);
     return sphere;
   }
 

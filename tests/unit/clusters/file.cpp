@@ -86,6 +86,32 @@ TEST_CASE("a graph read back keeps its promises, its borders and its shape") {
   }
 }
 
+TEST_CASE("promises hold in the file far from the origin, also for cameras on the line of centres") {
+  const auto folder = scratch_folder("cluster_file_far");
+  for (const float offset_m : {300.0F, 5'000.0F, 500'000.0F}) {
+    Mesh mesh = grid(60, 60);
+    for (glm::vec3& p : mesh.vertices.positions) p += glm::vec3{offset_m, 0.5F * offset_m, 0.25F * offset_m};
+    REQUIRE(write_cluster_graph(graph_of(mesh), folder / "a.lodg").ok());
+    const auto file = ClusterFile::open(folder / "a.lodg");
+    INFO(offset_m);
+    REQUIRE(file.ok());
+    const LodGraph& graph = (*file)->graph();
+    for (const LodGroup& group : graph.groups) {
+      for (std::uint32_t l = group.links.begin; l != group.links.end; ++l) {
+        if (graph.links[l].maker == none || std::isinf(group.error_m)) continue;
+        const LodGroup& finer = graph.groups[graph.links[l].maker];
+        const glm::dvec3 apart = finer.bounds.center - group.bounds.center;
+        const glm::dvec3 line = glm::length(apart) > 0.0 ? glm::normalize(apart) : glm::dvec3{0.0, 0.0, 1.0};
+        for (const double reach : {0.5, 1.0, 1.0 + 1e-9, 1.001, 2.0, 1e3}) {
+          View view;
+          view.eye = finer.bounds.center + line * (reach * finer.bounds.radius_m);
+          REQUIRE(error_px(view, group.error_m, group.bounds) > error_px(view, finer.error_m, finer.bounds));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("the same file is written again, byte for byte, also from what was read") {
   const auto folder = scratch_folder("cluster_file_again");
   const ClusterGraph graph = graph_of(grid(60, 60));
