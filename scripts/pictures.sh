@@ -33,3 +33,28 @@ build/release/examples/street_by_distance "$folder/street.glb"
 "$lodestone" sweep "$folder/collapsed.lode" --frames 600 --and-back --size 320x240 -o "$folder/sweep"
 montage "$folder"/sweep/frame_00{000,060,120,160,200,240,280,299}.png -tile 4x2 -geometry 320x240+1+1 -quality 88 \
   docs/images/house_sweep.jpg
+
+# One tile of generated mountains by all methods of docs/terrain.md, drawn thirty times too high: the posts, then each method.
+node tests/clients/terrain/heights.mjs "$folder/heights.asc"
+pictures=()
+tile() {  # NAME OPTIONS...
+  local name=$1
+  shift
+  "$lodestone" terrain "$folder/heights.asc" -o "$folder/$name" --quiet "$@"
+  scripts/terrain_obj.py "$folder/$name/5/33/24.terrain" "$folder/$name.obj" 14000
+  for style in shaded wireframe; do
+    local options=()
+    if [ $style = wireframe ]; then options=(--wireframe); fi
+    "$lodestone" render "$folder/$name.obj" --up z --size 400x190 --fov 25 --eye 7000,-13000,13500 --target 7000,5200,1700 \
+      "${options[@]}" --quiet -o "$folder/$name-$style.png"
+  done
+  pictures+=("$folder/$name-shaded.png" "$folder/$name-wireframe.png")
+}
+tile posts --max-error 0.01m
+tile greedy --max-error 100m
+tile edge-collapse --max-error 100m --method edge-collapse
+tile points-random --max-error 100m --method points-random --keep 0.01
+tile points-grid --max-error 100m --method points-grid --cell 10
+tile points-hierarchy --max-error 100m --method points-hierarchy --cluster 200
+tile points-wlop --max-error 100m --method points-wlop --keep 0.01
+montage "${pictures[@]}" -tile 4x -geometry 400x190+1+1 -quality 86 docs/images/terrain_methods.jpg
