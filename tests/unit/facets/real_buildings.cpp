@@ -66,12 +66,17 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
   }
 }
 
-// Moves, turns, repeats and drops faces of a real building at random.
+// Turns, re-points, moves, flattens, drops and repeats faces of a real building at random, and shakes its points.
 void damage(Mesh& mesh, std::mt19937& random) {
   const auto pick = [&](std::size_t count) { return std::uniform_int_distribution<std::size_t>{0, count - 1}(random); };
-  for (int i = 0; i < 60; ++i) {
-    const std::size_t f = 3 * pick(mesh.triangle_count());
-    switch (pick(4)) {
+  const auto move_face = [&](std::size_t to, std::size_t from) {
+    std::copy_n(mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * from), 3,
+                mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * to));
+  };
+  for (int i = 0; i < 90; ++i) {
+    const std::size_t face = pick(mesh.triangle_count());
+    const std::size_t f = 3 * face;
+    switch (pick(7)) {
       case 0:
         std::swap(mesh.indices[f], mesh.indices[f + 1]);
         break;
@@ -81,9 +86,23 @@ void damage(Mesh& mesh, std::mt19937& random) {
       case 2:
         mesh.vertices.positions[mesh.indices[f]] += glm::vec3{0.0F, 0.0F, 3.0F};
         break;
-      default:
+      case 3:
         mesh.indices[f + 1] = mesh.indices[f];
         break;
+      case 4:  // goes, and the last one takes its place with its own looks
+        move_face(face, mesh.triangle_count() - 1);
+        mesh.indices.resize(mesh.indices.size() - 3);
+        if (!mesh.face_materials.empty()) mesh.face_materials.pop_back();
+        if (!mesh.face_features.empty()) mesh.face_features.pop_back();
+        break;
+      case 5:  // the same face over another one
+        move_face(face, pick(mesh.triangle_count()));
+        break;
+      default: {
+        const auto shake = [&] { return 0.002F * static_cast<float>(pick(11)) - 0.01F; };
+        mesh.vertices.positions[mesh.indices[f]] += glm::vec3{shake(), shake(), shake()};
+        break;
+      }
     }
   }
 }
