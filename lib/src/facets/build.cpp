@@ -32,7 +32,7 @@ namespace {
 
 constexpr double first_price = 1e-10;  // m^4 a face
 constexpr double price_step = 4.0;
-constexpr double last_share = 1e-4;  // of (area * diagonal^2): beyond it the block itself would go
+constexpr double last_share = 1e-2;  // of (area * diagonal^2): beyond it the block itself would go
 constexpr std::uint32_t rounds_per_price = 4;
 constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
 constexpr std::size_t few_neighbours = 24;    // with more it is looked at again only when the others are done

@@ -23,7 +23,7 @@ constexpr std::size_t most_corners = 64;
 constexpr double most_depth_m = 1.5;   // behind the wall
 constexpr double most_height_m = 0.4;  // before it
 constexpr double margin_m = 0.1;       // frames may reach so far under the wall
-constexpr double covered = 0.85;       // of the hole, at least
+constexpr double covered = 0.6;        // of the hole, at least: what went before counts as open only if it was much
 constexpr double look_weight = 0.2;    // of a window that goes, beside a hole that closes
 
 struct Plane {
