@@ -37,7 +37,7 @@ struct PassState {
 class Collapser {
  public:
   Collapser(PassState& state, Range region, PassLog& log)
-      : state_(state), region_(region), log_(log), wedges_(state.mesh, state.source, state.options, state.diagonal_m) {}
+      : state_(state), region_(region), log_(log), wedges_(state.mesh, state.options, state.diagonal_m) {}
 
   // `key` orders the record in the log; a later record that depends on it gets at least the same key.
   Refusal attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key, double cost_limit);

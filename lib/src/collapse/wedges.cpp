@@ -47,9 +47,8 @@ bool seam_between(const WorkingMesh& mesh, const Mesh& source, const Face& f, co
          !same_look(mesh, mesh.vertex_of(f, corner_at(f, q)), mesh.vertex_of(g, corner_at(g, q)));
 }
 
-Wedges::Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions& options, double diagonal_m)
+Wedges::Wedges(WorkingMesh& mesh, const EdgeCollapseOptions& options, double diagonal_m)
     : mesh_(mesh),
-      source_(source),
       options_(options),
       uv_scale_(options.uv_weight * diagonal_m),
       color_scale_(options.color_weight * diagonal_m / 255.0) {}

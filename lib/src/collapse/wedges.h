@@ -30,7 +30,7 @@ struct Choice {
 
 class Wedges {
  public:
-  Wedges(WorkingMesh& mesh, const Mesh& source, const EdgeCollapseOptions& options, double diagonal_m);
+  Wedges(WorkingMesh& mesh, const EdgeCollapseOptions& options, double diagonal_m);
 
   // Pairs the vertices for the choice, finds new values and returns what the change of looks costs, in the unit of the
   // geometric cost.
@@ -89,7 +89,6 @@ class Wedges {
   [[nodiscard]] VertexId nearest_look_at(std::uint32_t point, VertexId to) const;
 
   WorkingMesh& mesh_;
-  const Mesh& source_;
   const EdgeCollapseOptions& options_;
   double uv_scale_, color_scale_;
   std::vector<Pair> pairs_;

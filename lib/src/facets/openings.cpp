@@ -16,7 +16,6 @@
 namespace lodestone::facets {
 namespace {
 
-constexpr double parallel_cosine = 0.99985;
 constexpr double facing_cosine = 0.9;
 constexpr double plane_m = 0.003;
 constexpr std::size_t most_corners = 64;
