@@ -19,10 +19,13 @@ class Extract final : public Verb {
   }
   void declare(Arguments& arguments) override {
     arguments.file("MODEL", model_, "Progressive model (.lode)", Need::Required);
-    arguments.file("-o,--output", output_, "File to write: .obj, .ply or .glb; with --plan a folder", Need::Required);
+    arguments.file("-o,--output", output_, "File to write: .obj, .ply or .glb; with --plan alone a folder",
+                   Need::Required);
     level_.declare(arguments);
-    arguments.file("--plan", plan_, "All levels of a plan made by 'distances': GLB, MSFT_lod, 3D Tiles",
-                   Need::Optional);
+    arguments.file(
+        "--plan", plan_,
+        "All levels of a plan made by 'distances': GLB, MSFT_lod, 3D Tiles; with --perceptual the one it needs",
+        Need::Optional);
     arguments.bytes("--bytes", bytes_, "Use only the first so many bytes of the file");
   }
   [[nodiscard]] Status run(Session& session) override;
@@ -38,15 +41,18 @@ class Extract final : public Verb {
 };
 
 Status Extract::run(Session& session) {
-  if (level_.ways() + int{!plan_.empty()} != 1) {
+  const bool all_of_plan = !plan_.empty() && !level_.is_perceptual();
+  if (level_.ways() + int{all_of_plan} != 1) {
     return Error{ErrorCode::BadArgument,
-                 "extract needs exactly one of --triangles, --ratio, --error, --level, --perceptual and --plan", ""};
+                 "extract needs exactly one of --triangles, --ratio, --error, --level, --perceptual (which may have a "
+                 "--plan) and --plan",
+                 ""};
   }
   auto model = read_model(model_, {.max_bytes = bytes_}, session.context());
   session.keep(model);
   if (!model) return model.error();
-  if (!plan_.empty()) return write_plan(**model, session);
-  const auto level = level_.in(**model);
+  if (all_of_plan) return write_plan(**model, session);
+  const auto level = level_.in(**model, plan_);
   if (!level) return level.error();
   const Mesh mesh = (*model)->extract(*level);
   Report& report = session.report();

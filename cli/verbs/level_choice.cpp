@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include <lodestone/discrete_levels.h>
 #include <lodestone/perception.h>
 
 namespace lodestone::cli {
@@ -16,7 +17,7 @@ void LevelChoice::declare(Arguments& arguments) {
   arguments.length_m(
       "--perceptual", perceptual_m_,
       "The coarsest level that deviates by at most half a pixel from this distance, on a screen of 1280 x "
-      "1024 under 33 degrees");
+      "1024 under 33 degrees; with --plan the level that was measured to be needed there");
 }
 
 int LevelChoice::ways() const noexcept {
@@ -24,10 +25,16 @@ int LevelChoice::ways() const noexcept {
          int{perceptual_m_.has_value()};
 }
 
-Result<Level> LevelChoice::in(const ProgressiveModel& model) const {
+Result<Level> LevelChoice::in(const ProgressiveModel& model, const std::filesystem::path& plan_file) const {
   if (triangles_) return model.level_of_triangles(*triangles_);
   if (ratio_) {
     return model.level_of_triangles(static_cast<std::uint32_t>(std::lround(*ratio_ * model.face_slot_count())));
+  }
+  if (perceptual_m_ && !plan_file.empty()) {
+    const auto plan = read_level_plan(plan_file);
+    if (!plan) return plan.error();
+    if (Status fits = check_level_plan(*plan, model); !fits) return fits.error();
+    return needed_level(*plan, *perceptual_m_);
   }
   if (perceptual_m_) return model.level_of_error(imperceptible_error_m(*perceptual_m_, focal_length_px(Display{})));
   if (error_m_) return model.level_of_error(*error_m_);

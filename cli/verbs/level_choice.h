@@ -2,6 +2,7 @@
 // The ways to name one level of a model on the command line.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -17,8 +18,11 @@ class LevelChoice {
 
   // How many of the ways were used.
   [[nodiscard]] int ways() const noexcept;
-  // Precondition: ways() is 1.
-  [[nodiscard]] Result<Level> in(const ProgressiveModel& model) const;
+  // By --perceptual.
+  [[nodiscard]] bool is_perceptual() const noexcept { return perceptual_m_.has_value(); }
+  // Precondition: ways() is 1. `plan_file`, with --perceptual: the plan of 'distances' that says what is needed; empty
+  // = half a pixel.
+  [[nodiscard]] Result<Level> in(const ProgressiveModel& model, const std::filesystem::path& plan_file = {}) const;
 
  private:
   std::optional<std::uint32_t> triangles_;

@@ -34,6 +34,7 @@ class Render final : public Verb {
   MeshInput input_;
   std::filesystem::path output_;
   LevelChoice level_;
+  std::filesystem::path plan_;
   CameraOptions camera_;
   bool wireframe_ = false;
   bool lod_colors_ = false;
@@ -48,6 +49,7 @@ void Render::declare(Arguments& arguments) {
   input_.declare(arguments, "FILE", "Mesh, .lode or .lodg file or tileset.json");
   arguments.file("-o,--output", output_, "Picture to write: .png, .jpg or .webp", Need::Required);
   level_.declare(arguments);
+  arguments.file("--plan", plan_, "With --perceptual: the level that a plan made by 'distances' needs", Need::Optional);
   camera_.declare(arguments);
   arguments.flag("--wireframe", wireframe_, "Draw triangle edges over the surface");
   arguments.flag("--lod-colors", lod_colors_, "Colour by triangle size: blue is fine, red is coarse");
@@ -75,7 +77,7 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
   if (!model) return model.error();
   if (sheet_levels_ > 0) return draw_sheet(*model, options);
   if (level_.ways() == 0) return render::render_level(*model, (*model)->record_count(), options);
-  const auto level = level_.in(**model);
+  const auto level = level_.in(**model, plan_);
   if (!level) return level.error();
   return render::render_level(*model, *level, options);
 }
@@ -101,6 +103,9 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
   if (level_.ways() > 1) {
     return Error{ErrorCode::BadArgument,
                  "name the level by one of --triangles, --ratio, --error, --level and --perceptual", ""};
+  }
+  if (!plan_.empty() && !level_.is_perceptual()) {
+    return Error{ErrorCode::BadArgument, "--plan needs --perceptual, which says from how far away", ""};
   }
   if (is_model_file(input_.file())) return draw_model(session, options);
   if (level_.ways() > 0 || sheet_levels_ > 0) {

@@ -380,9 +380,19 @@ class Keys(Contract):
         small = ("--frames", 4, "--size", "64x48", "--style", "hard")
         self.json("sweep", self.model, *small, "--perceptual", 4000, "--plan", folder / "plan.json")
         self.assertIn("how far away", self.fails(1, "sweep", self.model, *small, "--plan", folder / "plan.json"))
+        # One level, where the plan was measured; half a pixel alone says another.
+        needed = plan["needed"][len(plan["needed"]) // 2]
+        one = ("--perceptual", f"{needed['distance_m']}m", "--plan", folder / "plan.json")
+        self.assertEqual(self.json("extract", self.model, *one, "-o", self.scratch / "one.ply")["level"], needed["level"])
+        drawn = self.json("render", self.model, *one, "--size", "64x48", "-o", self.scratch / "one.png")
+        self.assertEqual(drawn["triangles"], self.json("extract", self.model, "--level", needed["level"], "-o",
+                                                       self.scratch / "one.ply")["triangles"])
+        self.assertIn("--perceptual", self.fails(1, "render", self.model, "--plan", folder / "plan.json", "-o",
+                                                 self.scratch / "one.png"))
         other = self.scratch / "other.lode"
         self.json("build", self.house, "--placement", "midpoint", "--target-triangles", 2000, "-o", other)
-        for words in (("extract", other, "-o", self.scratch / "no"), ("sweep", other, *small, "--perceptual", 4000)):
+        for words in (("extract", other, "-o", self.scratch / "no"),
+                      ("extract", other, "--perceptual", 40, "-o", self.scratch / "no.ply"), ("sweep", other, *small, "--perceptual", 4000)):
             self.assertIn("another model", self.fails(1, *words, "--plan", folder / "plan.json"))
         (self.scratch / "bad.json").write_text('{"format": 3}')
         self.assertIn("bad.json", self.fails(2, "extract", self.model, "--plan", self.scratch / "bad.json", "-o",

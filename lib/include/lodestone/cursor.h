@@ -46,12 +46,16 @@ class Target {
   /// The coarsest level that deviates by at most so many metres.
   [[nodiscard]] static Target error_m(double error_m) noexcept { return {Kind::ByError, error_m}; }
   /// What an eye cannot tell from the source at `distance_m` from the middle of the model: the coarsest level that
-  /// deviates by at most half a pixel there (equation 17 of perception.h). `focal_px` as in view.h.
+  /// deviates by at most half a pixel there (equation 17 of perception.h). `focal_px` as in view.h. Needs no
+  /// preparation, and bounds movement only: many thin bars that go at one small error may be noticed. Where that
+  /// matters use the measured plan of `lodestone distances`: `Target::level(needed_level(plan, distance_m))`
+  /// (discrete_levels.h).
   [[nodiscard]] static Target perceptual(double distance_m, double focal_px) noexcept {
     return {Kind::ByError, distance_m / (2.0 * focal_px)};
   }
   /// As much of the detail as is seen from `beyond_m` metres beyond the first distance d1 (equation 11 of
-  /// perception.h): that share of the source's triangles; all of them up to d1.
+  /// perception.h): that share of the source's triangles; all of them up to d1. The paper's optimal level, a bound of
+  /// what could be saved; it looks at no level of the model. To choose a level to show use the other ways.
   [[nodiscard]] static Target perceptual(const DetailFit& fit, double beyond_m) noexcept;
   /// The coarsest level that deviates by at most `max_error_px` on the screen. With hysteresis: the target stays while
   /// the error of the present target lies within [1 - h, 1 + h] times the limit, so a camera that rests does not
