@@ -34,9 +34,12 @@ Result<LevelCheck> LevelChecker::check(Level level, double distance_m) {
     const ObjectPicture& fine = (**full)[i];
     const auto coarse = stage_.picture(sides_[i].azimuth_rad, distance_m, Edges::Smooth);
     if (!coarse) return coarse.error();
-    const auto seen = check_vision(fine.image, coarse->image, fine.mask, vision_);
+    // Of either: a level that grows beyond the outline of the source is seen there too.
+    std::vector<std::uint8_t> object = fine.mask;
+    for (std::size_t p = 0; p < object.size(); ++p) object[p] |= coarse->mask[p];
+    const auto seen = check_vision(fine.image, coarse->image, object, vision_);
     if (!seen) return seen.error();
-    const auto count = static_cast<double>(std::count(fine.mask.begin(), fine.mask.end(), std::uint8_t{1}));
+    const auto count = static_cast<double>(std::count(object.begin(), object.end(), std::uint8_t{1}));
     check.ssim += seen->ssim * count;
     check.noticeable_ratio += seen->noticeable_ratio * count;
     pixels += count;

@@ -45,7 +45,7 @@ struct SideStudy {
 struct LevelCheck {
   double distance_m = 0.0;  ///< from the camera
   double ssim = 1.0;
-  double noticeable_ratio = 0.0;  ///< of the object's pixels
+  double noticeable_ratio = 0.0;  ///< of the pixels that the object has in either
 };
 
 struct PlanCheck {
