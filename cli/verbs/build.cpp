@@ -35,6 +35,7 @@ class Build final : public Verb {
   bool reference_textures_ = false;
   std::uint32_t target_triangles_ = 0;
   std::optional<double> max_error_m_;
+  std::optional<double> weld_m_;
   std::uint32_t quantize_bits_ = 0;
 };
 
@@ -50,6 +51,7 @@ void Build::declare(Arguments& arguments) {
                   "Stop at so many triangles, 0 = as few as possible");
   arguments.length_m("--max-error", max_error_m_, "Stop before the error exceeds this");
   tolerance_.declare(arguments);
+  arguments.length_m("--weld", weld_m_, "Facet shift: points nearer than this are one, only equal ones if not given");
   arguments.choice("--interior", interior_, {"keep", "drop-first"},
                    "Whether what cannot be seen from outside goes first");
   arguments.choice("--order", order_, {"one-by-one", "together"}, "Windows of a facade coarsen so");
@@ -71,6 +73,7 @@ EdgeCollapseOptions Build::options() const {
 
 FacetShiftOptions Build::shift_options() const {
   FacetShiftOptions options{.tolerance = tolerance_.value(), .target_triangles = target_triangles_};
+  if (weld_m_) options.weld_tolerance_m = *weld_m_;
   if (interior_ == "drop-first") options.interior = Interior::DropFirst;
   if (order_ == "together") options.order = ShiftOrder::Together;
   if (max_error_m_) options.max_error_m = *max_error_m_;

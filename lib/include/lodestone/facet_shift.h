@@ -111,6 +111,10 @@ enum class ShiftOrder : std::uint8_t {
 
 struct FacetShiftOptions {
   SurfaceTolerance tolerance;
+  /// Corner points nearer to each other than this count as one, and move as one: so do the twins on both sides of an
+  /// edge of three or more faces. The finest level keeps them as they are; every record costs at least this much. 0
+  /// takes equal positions only, and is right for most; metres.
+  double weld_tolerance_m = 0.0;
   /// T-junctions are closed first: a triangle whose open side passes by a point of its neighbour within this distance
   /// is cut there. Surveyed models do not share the points of such sides, and walls in pieces coarsen badly. 0 leaves
   /// the source as it is; metres.

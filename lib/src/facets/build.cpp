@@ -45,7 +45,7 @@ class Builder {
       : options_(options),
         context_(context),
         log_(progressive::value_words(source.vertices)),
-        mesh_(make_facet_mesh(source, options.tolerance, degenerate_)),
+        mesh_(make_facet_mesh(source, options, degenerate_)),
         moved_(mesh_),
         planner_(mesh_),
         parts_(mesh_),
@@ -106,7 +106,7 @@ class Builder {
 
 void Builder::drop_degenerate() {
   for (const FaceId f : degenerate_) {
-    log_.begin(0.0F);
+    log_.begin(static_cast<float>(options_.weld_tolerance_m));
     log_.remove_face(f);
     log_.end();
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lodestone/repair.h>
+
 #include "mesh/weld.h"
 #include "progressive/values.h"
 
@@ -277,18 +279,26 @@ void Moved::set(std::span<const Move> moves) {
   }
 }
 
-FacetMesh make_facet_mesh(const Mesh& source, const SurfaceTolerance& tolerance, std::vector<FaceId>& degenerate) {
+FacetMesh make_facet_mesh(const Mesh& source, const FacetShiftOptions& options, std::vector<FaceId>& degenerate) {
   FacetMesh mesh;
   mesh.source = &source;
-  mesh.surfaces = characteristic_surfaces(source, tolerance);
+  // What counts as one point is seen on a copy: the finest level is the source as it is.
+  Mesh copy;
+  if (options.weld_tolerance_m > 0.0) {
+    copy = source;
+    repair(copy,
+           {.weld_tolerance_m = options.weld_tolerance_m, .remove_degenerate = false, .remove_duplicates = false});
+  }
+  const Mesh& welded = options.weld_tolerance_m > 0.0 ? copy : source;
+  mesh.surfaces = characteristic_surfaces(welded, options.tolerance);
   mesh.surface_faces.resize(mesh.surfaces.surfaces.size());
-  const Weld weld = weld_by_position(source.vertices.positions);
+  const Weld weld = weld_by_position(welded.vertices.positions);
   mesh.place.resize(weld.point_count());
   for (std::uint32_t p = 0; p < weld.point_count(); ++p) {
-    mesh.place[p] = source.vertices.positions[weld.first_vertex[p]];
+    mesh.place[p] = welded.vertices.positions[weld.first_vertex[p]];
   }
   mesh.faces_of.resize(weld.point_count());
-  mesh.deviation_m.assign(weld.point_count(), 0.0F);
+  mesh.deviation_m.assign(weld.point_count(), static_cast<float>(options.weld_tolerance_m));
   mesh.version.assign(weld.point_count(), 0);
   mesh.values = source.vertices;
   mesh.uses.assign(source.vertex_count(), 0);

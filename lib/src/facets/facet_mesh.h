@@ -60,8 +60,9 @@ struct FacetMesh {
   }
 };
 
-// Faces with two corners on one point or no area are dead from the start: `degenerate` names them.
-[[nodiscard]] FacetMesh make_facet_mesh(const Mesh& source, const SurfaceTolerance& tolerance,
+// Faces with two corners on one point or no area are dead from the start: `degenerate` names them. Vertices of one
+// point may lie apart by the tolerance for welding until the point moves.
+[[nodiscard]] FacetMesh make_facet_mesh(const Mesh& source, const FacetShiftOptions& options,
                                         std::vector<FaceId>& degenerate);
 
 // Where everything goes under a set of moves, without doing it. Kept between calls to save memory traffic.

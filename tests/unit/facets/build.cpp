@@ -114,6 +114,27 @@ TEST_CASE("building stops at the target, at the error, and when cancelled") {
   CHECK(cancelled.error().code == ErrorCode::Cancelled);
 }
 
+TEST_CASE("points within the tolerance move as one, and the finest level keeps them apart") {
+  // The same panel, with every triangle's corners moved by up to half a millimetre.
+  Mesh mesh = test::unwelded(test::wall_with_panel(0.2F));
+  mesh.vertices.normals.clear();
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
+    mesh.vertices.positions[v].x += 0.00005F * static_cast<float>(v % 7);
+    mesh.vertices.positions[v].z -= 0.00005F * static_cast<float>(v % 5);
+  }
+  const auto apart = build_by_facet_shift(mesh, {.t_junction_tolerance_m = 0.0});
+  REQUIRE(apart.ok());
+  CHECK(apart->report.shifts + apart->report.openings_flattened == 0);
+  const auto welded = build_by_facet_shift(mesh, {.weld_tolerance_m = 0.002, .t_junction_tolerance_m = 0.0});
+  REQUIRE(welded.ok());
+  check_model(*welded->model, mesh);
+  CHECK(welded->report.shifts + welded->report.openings_flattened == 1);
+  const Level flat = welded->model->level_of_triangles(2);
+  CHECK(welded->model->extract(flat).triangle_count() == 2);
+  CHECK(welded->model->error_m(flat) == Approx(0.2).epsilon(0.02));
+  CHECK(welded->model->error_m(welded->model->record_count() - 1) >= 0.002);
+}
+
 Mesh small_house() {
   HouseOptions options;
   options.triangles = 3000;
