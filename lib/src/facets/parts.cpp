@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t most_part_faces = 256;  // larger ones lose facets first
 constexpr double held_m = 0.03;               // an outline nearer to the rest than this lies on it
 constexpr double held_share = 0.9;            // of the corners of a pane that closes an opening
-constexpr double long_edge_m = 0.6;          // over shorter ones the distance runs straight
+constexpr double long_edge_m = 0.6;           // over shorter ones the distance runs straight
 constexpr double look_ahead = 16.0;  // times the price: so far costs are found, so that not each price asks anew
 
 }  // namespace
