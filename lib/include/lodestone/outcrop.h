@@ -27,6 +27,7 @@
 
 #include <lodestone/context.h>
 #include <lodestone/image.h>
+#include <lodestone/lod_graph.h>
 #include <lodestone/mesh.h>
 #include <lodestone/result.h>
 #include <lodestone/types.h>
@@ -143,6 +144,9 @@ class OutcropPyramid {
   [[nodiscard]] const std::string& crs() const noexcept { return surroundings_.crs; }
   [[nodiscard]] const Surroundings& surroundings() const noexcept { return surroundings_; }
   [[nodiscard]] std::uint64_t tile_bytes() const noexcept { return tile_bytes_; }
+  /// The pyramid as the graph that select_cut() walks: a node per tile (`node_draft` says which), a group per tile with
+  /// children, errors in metres.
+  [[nodiscard]] AssembledGraph graph() const;
   /// Held by the triangles of all levels.
   [[nodiscard]] std::size_t memory_bytes() const noexcept;
 

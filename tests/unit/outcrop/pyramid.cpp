@@ -158,6 +158,24 @@ TEST_CASE("Boxes enclose what is below, errors grow upwards, every tile has its 
   }
 }
 
+TEST_CASE("As a graph the pyramid is cut by the one rule: from far the root, from nowhere coarser than asked") {
+  const auto pyramid = pyramid_of(small_cliff(), small_tiles());
+  const AssembledGraph assembled = pyramid->graph();
+  CHECK(validate(assembled.graph).ok());
+  REQUIRE(assembled.graph.nodes.size() == pyramid->tiles().size());
+  CutScratch scratch;
+  std::vector<NodeId> cut;
+  View view;
+  view.eye = {0.0, -1e6, 0.0};
+  select_cut(assembled.graph, view, {}, scratch, cut);
+  REQUIRE(cut.size() == 1);
+  CHECK(assembled.node_draft[cut.front()] == pyramid->root());
+  select_cut(assembled.graph, view, {.error_px = 1e-9, .culling = Culling::None}, scratch, cut);
+  std::uint32_t triangles = 0;
+  for (const NodeId n : cut) triangles += pyramid->tiles()[assembled.node_draft[n]].triangles;
+  CHECK(triangles == small_cliff().triangle_count());
+}
+
 TEST_CASE("A level's error bounds its measured distance from the source and includes the texel") {
   const Mesh& cliff = small_cliff();
   const auto pyramid = pyramid_of(cliff, small_tiles());
