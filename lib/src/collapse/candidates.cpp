@@ -167,6 +167,24 @@ bool closed_ring(const Around& around) {
   return true;
 }
 
+// Based on: Ao et al. 2025, equation 4: angles between the normals around a point, weighted by area. Differs: it is
+// their mean, so it does not grow with the number of faces. `normals` are area vectors.
+double sharpness_of(const std::vector<glm::dvec3>& normals) {
+  if (normals.size() < 2 || normals.size() > few_faces) return 1.0;
+  double total = 0.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const double area = glm::length(normals[i]);
+    total += area;
+    for (std::size_t j = 0; j < i; ++j) {
+      const double other = glm::length(normals[j]);
+      if (!(area > 0.0) || !(other > 0.0)) continue;
+      sum += (area + other) * std::acos(std::clamp(glm::dot(normals[i], normals[j]) / (area * other), -1.0, 1.0));
+    }
+  }
+  return total > 0.0 ? sum / (total * static_cast<double>(normals.size() - 1)) : 0.0;
+}
+
 struct Estimator {
   const WorkingMesh& mesh;
   const std::vector<Symmetric3>& quadrics;
@@ -229,12 +247,16 @@ std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, 
   std::vector<Symmetric3> quadrics(mesh.point_count());
   const double sharp_cosine = std::cos(std::min(rules.options.sharp_edge_rad, std::numbers::pi));
   const bool inner_lines = rules.looks_matter || sharp_cosine > -1.0;
+  const double sharpness_power = rules.options.sharpness_power;
+  if (sharpness_power > 0.0) mesh.sharpness.assign(mesh.point_count(), 1.0F);
   parallel_chunks(mesh.point_count(), point_chunk, context, [&](std::size_t begin, std::size_t end) {
     Around around;
+    std::vector<glm::dvec3> normals;
     for (auto p = static_cast<std::uint32_t>(begin); p != end; ++p) {
       const std::uint32_t degree = mesh.first[p + 1] - mesh.first[p];
       around.next.resize(degree);
       around.previous.resize(degree);
+      normals.resize(degree);
       Symmetric3 quadric;
       const glm::dvec3 at{mesh.position[p]};
       const std::uint32_t* corners = mesh.corners.data() + mesh.first[p];
@@ -245,8 +267,14 @@ std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, 
         const std::uint32_t previous = f.point[k == 0 ? 2 : k - 1];
         around.next[i] = next;
         around.previous[i] = previous;
-        quadric.add_plane(glm::cross(glm::dvec3{mesh.position[next]} - at, glm::dvec3{mesh.position[previous]} - at));
+        normals[i] = glm::cross(glm::dvec3{mesh.position[next]} - at, glm::dvec3{mesh.position[previous]} - at);
       }
+      double root_of_weight = 1.0;
+      if (sharpness_power > 0.0) {
+        mesh.sharpness[p] = static_cast<float>(std::pow(sharpness_of(normals), sharpness_power));
+        root_of_weight = std::sqrt(mesh.weight_at(p));
+      }
+      for (const glm::dvec3& normal : normals) quadric.add_plane(normal * root_of_weight);
       std::uint8_t flags = mesh.flags[p] & point_frozen;
       if (!closed_ring(around)) flags |= add_borders(mesh, around, at, flags != 0, rules.weight, quadric);
       if (inner_lines) flags |= add_inner_lines(mesh, rules, p, sharp_cosine, around, quadric);

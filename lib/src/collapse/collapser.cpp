@@ -197,7 +197,7 @@ bool Collapser::try_place(const glm::dvec3& y) {
 }
 
 Refusal Collapser::choose_place() {
-  quadric_ = sum_star(star_, state_.line_weight);
+  quadric_ = sum_star(star_, state_.line_weight, state_.mesh.weight_at(star_.u), state_.mesh.weight_at(star_.v));
   const Placement placement = state_.options.placement;
   const bool ends_only = placement == Placement::EndPoint || placement == Placement::Subset;
   // A place where the end that cannot go, or may not move, already is.

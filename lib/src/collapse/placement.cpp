@@ -6,6 +6,7 @@
 #include "collapse/placement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "collapse/weights.h"
@@ -43,17 +44,22 @@ glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
 
 }  // namespace
 
-StarQuadric sum_star(const Star& star, double weight_of_lines) {
+StarQuadric sum_star(const Star& star, double weight_of_lines, double weight_of_u, double weight_of_v) {
   StarQuadric sum;
+  const double root_u = std::sqrt(weight_of_u);
+  const double root_v = std::sqrt(weight_of_v);
+  const double root_both = std::sqrt(0.5 * (weight_of_u + weight_of_v));
   for (const StarFace& f : star.faces) {
-    sum.a.add_plane(f.normal);
-    sum.weight += glm::dot(f.normal, f.normal);
+    const double root = f.side == Side::Both ? root_both : (f.side == Side::V ? root_v : root_u);
+    const glm::dvec3 plane = f.normal * root;
+    sum.a.add_plane(plane);
+    sum.weight += glm::dot(plane, plane);
     sum.volume_normal += f.normal;
     if (f.side != Side::V) continue;
-    const double t = glm::dot(f.normal, star.e);
-    sum.b += f.normal * t;
+    const double t = glm::dot(plane, star.e);
+    sum.b += plane * t;
     sum.c += t * t;
-    sum.volume += t;
+    sum.volume += glm::dot(f.normal, star.e);
   }
   for (const StarLine& line : star.lines) {
     const double length2 = glm::dot(line.direction, line.direction);

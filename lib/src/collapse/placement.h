@@ -21,7 +21,8 @@ struct StarQuadric {
     return std::max(a.form(y) - 2.0 * glm::dot(b, y) + c, 0.0);
   }
 };
-[[nodiscard]] StarQuadric sum_star(const Star& star, double weight_of_lines);
+// Faces around u alone count by `weight_of_u`, those around v by `weight_of_v`, those around both by the mean.
+[[nodiscard]] StarQuadric sum_star(const Star& star, double weight_of_lines, double weight_of_u, double weight_of_v);
 
 // The best place that `placement` allows, relative to u.
 [[nodiscard]] glm::dvec3 best_place(const Star& star, const StarQuadric& quadric, Placement placement);

@@ -35,6 +35,7 @@ struct WorkingMesh {
   std::vector<glm::vec3> position;     // per point
   std::vector<float> deviation_m;      // per point: of the surface around it from the source
   std::vector<std::uint8_t> flags;     // per point: PointFlag
+  std::vector<float> sharpness;        // per point, to the wanted power; empty if it does not count
   std::vector<std::uint32_t> part;     // per point: connected part; empty if there is one
   std::vector<VertexId> wedge;         // per point: the vertex there; empty if some point has several
   std::vector<std::uint32_t> first;    // per point, and one past the end: where its corners begin in `corners`
@@ -48,6 +49,9 @@ struct WorkingMesh {
   std::uint32_t part_count = 1;
 
   [[nodiscard]] std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(position.size()); }
+  [[nodiscard]] double weight_at(std::uint32_t point) const noexcept {
+    return sharpness.empty() ? 1.0 : double{sharpness[point]};
+  }
   [[nodiscard]] bool has_seams() const noexcept { return wedge.empty(); }
   [[nodiscard]] VertexId vertex_of(const Face& f, std::uint32_t k) const noexcept {
     return wedge.empty() ? corner_vertex[3 * std::size_t{f.id} + k] : wedge[f.point[k]];
