@@ -174,7 +174,9 @@ int error(const char* file) {
     const auto target = static_cast<std::uint32_t>(mesh.triangle_count() * (100 - percent) / 100);
     std::printf("{\"simplified_percent\": %d", percent);
     for (const auto& [name, attributes] : {std::pair{"ours", Attributes::All}, {"positions_only", Attributes::None}}) {
-      const auto simplified = simplify(mesh, {.attributes = attributes, .target_triangles = target});
+      const auto simplified = simplify(mesh, {.attributes = attributes,
+                                              .target_triangles = target,
+                                              .sharpness_power = attributes == Attributes::All ? 1.0 : 0.0});
       if (simplified) print_error(name, mesh, simplified->mesh);
     }
     // Its index buffer knows no materials: only where there is one.
