@@ -38,6 +38,21 @@ double best_further_switch(const SwitchPlan& plan, const ProgressiveModel& model
   return best_m;
 }
 
+// Makes the levels one by one, the farthest first, as fine as what is left of the cost allows.
+void refine_within(SwitchPlan& plan, double cost, const ProgressiveModel& model, double last_m) {
+  for (std::size_t i = plan.levels.size(); i-- > 0;) {
+    const double range_m = end_of(plan, i, last_m) - plan.switch_m[i];
+    if (!(range_m > 0.0) || !(plan.cost < cost)) continue;
+    const double affordable = plan.triangles[i] + (cost - plan.cost) / range_m;
+    const Level finest = i > 0 ? plan.levels[i - 1] : model.record_count();
+    const auto count = static_cast<std::uint32_t>(std::min<double>(affordable, model.triangle_count()));
+    const Level level = std::min(finest, std::max(plan.levels[i], model.level_of_triangles(count)));
+    plan.cost += range_m * (model.info(level).triangles - static_cast<double>(plan.triangles[i]));
+    plan.levels[i] = level;
+    plan.triangles[i] = model.info(level).triangles;
+  }
+}
+
 }  // namespace
 
 void add_cost(SwitchPlan& plan, const ProgressiveModel& model, double first_m, double last_m, double focal_px) {
@@ -89,18 +104,9 @@ void match_cost(SwitchPlan& plan, double cost, const ProgressiveModel& model, do
   }
   plan.allowed_px = std::exp(high);
   add_cost(plan, model, first_m, last_m, focal_px);
-  // Many records share one error, so the steps of allowed_px are coarse.
-  for (std::size_t i = plan.levels.size(); i-- > 0;) {
-    const double range_m = end_of(plan, i, last_m) - plan.switch_m[i];
-    if (!(range_m > 0.0) || !(plan.cost < cost)) continue;
-    const double affordable = plan.triangles[i] + (cost - plan.cost) / range_m;
-    const Level finest = i > 0 ? plan.levels[i - 1] : model.record_count();
-    const auto count = static_cast<std::uint32_t>(std::min<double>(affordable, model.triangle_count()));
-    const Level level = std::min(finest, std::max(plan.levels[i], model.level_of_triangles(count)));
-    plan.cost += range_m * (model.info(level).triangles - static_cast<double>(plan.triangles[i]));
-    plan.levels[i] = level;
-    plan.triangles[i] = model.info(level).triangles;
-  }
+  // Many records share one error, so the steps of allowed_px are coarse. A level is at most as fine as the one before
+  // it, so that a nearer one that got finer makes room for those beyond it in the next turn.
+  for (std::size_t turn = 0; turn < plan.levels.size(); ++turn) refine_within(plan, cost, model, last_m);
 }
 
 }  // namespace lodestone
