@@ -13,15 +13,12 @@ class LogSink final : public collapse::Sink {
   explicit LogSink(const Mesh& source) : log_(value_words(source)) {}
 
   void record(const collapse::Edit& edit) override {
-    log_.begin(edit.error_m);
-    for (const FaceId f : edit.faces) log_.remove_face(f);
-    for (const auto& [vertex, into] : edit.vertices) log_.remove_vertex(vertex, into);
-    for (const auto& [corner, to] : edit.corners) log_.repoint(corner, to);
-    const std::size_t words = edit.moved.empty() ? 0 : edit.values.size() / edit.moved.size();
-    for (std::size_t i = 0; i < edit.moved.size(); ++i) {
-      log_.move_vertex(edit.moved[i], edit.values.subspan(i * words, words));
-    }
-    log_.end();
+    const auto size = [](const auto& part) { return static_cast<std::uint32_t>(part.size()); };
+    const RecordEnds end{edit.error_m, size(edit.faces), size(edit.vertices), size(edit.corners), size(edit.moved)};
+    log_.append({edit.faces, edit.vertices, edit.corners, edit.moved, edit.values, {&end, 1}, {}});
+  }
+  void records(const collapse::PassLog& log, std::size_t begin, std::size_t end) override {
+    log_.append(log.run(begin, end));
   }
 
   [[nodiscard]] progressive::EditLog take() { return std::move(log_); }
@@ -49,7 +46,9 @@ Result<EdgeCollapseResult> build_by_edge_collapse(const Mesh& mesh, const EdgeCo
   EdgeCollapseResult result;
   progressive::EditLog log = collapse::collapse_log(mesh, options, context, result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
-  auto model = ProgressiveModel::from_data(progressive::record(mesh, std::move(log), "edge-collapse"));
+  ModelData data = progressive::record(mesh, std::move(log), "edge-collapse", context);
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
+  auto model = ProgressiveModel::from_data(std::move(data));
   if (!model.ok()) return model.error();
   result.model = std::move(model).value();
   return result;

@@ -11,20 +11,16 @@
 #include <numeric>
 #include <utility>
 
-#include "base/parallel.h"
 #include "collapse/wedges.h"
 #include "collapse/weights.h"
 
 namespace lodestone::collapse {
 namespace {
 
-constexpr std::size_t point_chunk = 8192;
-constexpr std::size_t face_chunk = 8192;
-constexpr std::uint32_t histogram_shift = 19;  // 4096 bins: sign, exponent, 4 bits of mantissa
-
 // The other two points of the faces around one point, in the order of the faces.
 struct Around {
   std::vector<std::uint32_t> next, previous;
+  std::vector<glm::dvec3> normals;  // of the faces, twice their area long
 };
 
 // Up to so many faces at a point its lists are searched as they are; longer ones are sorted first, or a hub of a fan
@@ -203,15 +199,19 @@ struct Estimator {
     } else if constexpr (placement == Placement::Midpoint) {
       cost = 0.25 * (at_u + mu.form(e));
     } else {
-      const double at_v = mu.form(e);
       if constexpr (placement == Placement::OnEdge) {
+        const double at_v = mu.form(e);
         cost = at_u + at_v > 0.0 ? at_u * at_v / (at_u + at_v) : 0.0;
       } else {
+        // At the minimum y of the regularised form, (m + pull) y = b + pull / 2 e, the cost needs no second product.
+        const double pull = middle_weight * trace + 1e-300;
         Symmetric3 m = mu + mv;
-        m.add_isotropic(middle_weight * trace + 1e-300);
+        m.add_isotropic(pull);
         const Solver3 solve{m};
-        const glm::dvec3 y = solve(b + (0.5 * middle_weight * trace) * e);
-        cost = solve.valid() ? at_u - 2.0 * glm::dot(b, y) + (mu + mv).form(y) : std::min(at_u, at_v);
+        const glm::dvec3 towards_middle = (0.5 * pull) * e;
+        const glm::dvec3 y = solve(b + towards_middle);
+        cost =
+            solve.valid() ? at_u - glm::dot(b, y) + glm::dot(towards_middle - pull * y, y) : std::min(at_u, mu.form(e));
       }
     }
     cost += length_weight * trace * glm::dot(e, e);
@@ -219,110 +219,101 @@ struct Estimator {
   }
 };
 
+// Whether the edge from u to v is to be listed at u. Where both ends are manifold the face on the other side has it the
+// other way round, elsewhere either may be the only one.
+bool listed_once(std::uint32_t u, std::uint32_t v, std::uint8_t flags_of_both) {
+  return u < v || (flags_of_both & (point_border | point_complex)) != 0;
+}
+
 template <Placement placement>
-void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics,
-              std::vector<std::vector<Candidate>>& out, const Context& context) {
+void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Range points,
+              std::vector<Candidate>& edges, CostHistogram& histogram) {
   const Estimator estimator{mesh, quadrics};
-  parallel_chunks(mesh.faces.size(), face_chunk, context, [&](std::size_t begin, std::size_t end) {
-    std::vector<Candidate>& list = out[begin / face_chunk];
-    list.reserve((end - begin) * 2);
-    for (std::size_t i = begin; i != end; ++i) {
-      const Face& f = mesh.faces[i];
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t u = f.point[k];
-        const std::uint32_t v = f.point[k == 2 ? 0 : k + 1];
-        // Where both ends are manifold the face on the other side has the edge the other way round.
-        const auto both = static_cast<std::uint8_t>(mesh.flags[u] | mesh.flags[v]);
-        if (u > v && (mesh.flags[u] & mesh.flags[v] & (point_border | point_complex)) == 0) continue;
-        if ((both & point_frozen) != 0 && (mesh.flags[u] & mesh.flags[v] & point_frozen) != 0) continue;
-        list.push_back({std::bit_cast<std::uint32_t>(estimator.cost<placement>(u, v)), std::min(u, v), std::max(u, v)});
-      }
-    }
-  });
+  std::size_t kept = 0;
+  for (const Candidate& c : edges) {
+    const auto both = static_cast<std::uint8_t>(mesh.flags[c.u] & mesh.flags[c.v]);
+    if (!listed_once(c.u, c.v, both) || (both & point_frozen) != 0) continue;
+    const auto key = std::bit_cast<std::uint32_t>(estimator.cost<placement>(c.u, c.v));
+    histogram.add(key);
+    edges[kept] = {key, std::min(c.u, c.v), std::max(c.u, c.v)};
+    kept += points.begin <= c.v && c.v < points.end ? 1U : 0U;
+  }
+  edges.resize(kept);
+}
+
+// Everything about one point; `around` is scratch.
+Symmetric3 sum_point(WorkingMesh& mesh, const LineRules& rules, std::uint32_t p, double sharp_cosine, Around& around) {
+  const std::uint32_t degree = mesh.first[p + 1] - mesh.first[p];
+  around.next.resize(degree);
+  around.previous.resize(degree);
+  around.normals.resize(degree);
+  // Normals in float do for an estimate, and their sum of squares is taken in double.
+  const glm::vec3 at{mesh.position[p]};
+  const std::uint32_t* corners = mesh.corners.data() + mesh.first[p];
+  for (std::uint32_t i = 0; i != degree; ++i) {
+    const std::uint32_t k = corners[i] & 3U;
+    const Face& f = mesh.faces[corners[i] >> 2U];
+    const std::uint32_t next = f.point[k == 2 ? 0 : k + 1];
+    const std::uint32_t previous = f.point[k == 0 ? 2 : k - 1];
+    around.next[i] = next;
+    around.previous[i] = previous;
+    around.normals[i] = glm::dvec3{glm::cross(mesh.position[next] - at, mesh.position[previous] - at)};
+  }
+  if (!mesh.sharpness.empty()) {
+    mesh.sharpness[p] = static_cast<float>(std::pow(sharpness_of(around.normals), rules.options.sharpness_power));
+  }
+  Symmetric3 quadric;
+  const double root_of_weight = std::sqrt(mesh.weight_at(p));
+  for (const glm::dvec3& normal : around.normals) quadric.add_plane(normal * root_of_weight);
+  std::uint8_t flags = mesh.flags[p] & point_frozen;
+  if (!closed_ring(around)) flags |= add_borders(mesh, around, glm::dvec3{at}, flags != 0, rules.weight, quadric);
+  const bool inner_lines = rules.looks_matter || sharp_cosine > -1.0;
+  if (inner_lines) flags |= add_inner_lines(mesh, rules, p, sharp_cosine, around, quadric);
+  if (rules.options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
+  mesh.flags[p] = flags;
+  return quadric;
 }
 
 }  // namespace
 
-std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, const Context& context) {
-  std::vector<Symmetric3> quadrics(mesh.point_count());
+void sum_quadrics(WorkingMesh& mesh, const LineRules& rules, Range points, std::vector<Symmetric3>& quadrics,
+                  std::vector<Candidate>& edges) {
   const double sharp_cosine = std::cos(std::min(rules.options.sharp_edge_rad, std::numbers::pi));
-  const bool inner_lines = rules.looks_matter || sharp_cosine > -1.0;
-  const double sharpness_power = rules.options.sharpness_power;
-  if (sharpness_power > 0.0) mesh.sharpness.assign(mesh.point_count(), 1.0F);
-  parallel_chunks(mesh.point_count(), point_chunk, context, [&](std::size_t begin, std::size_t end) {
-    Around around;
-    std::vector<glm::dvec3> normals;
-    for (auto p = static_cast<std::uint32_t>(begin); p != end; ++p) {
-      const std::uint32_t degree = mesh.first[p + 1] - mesh.first[p];
-      around.next.resize(degree);
-      around.previous.resize(degree);
-      normals.resize(degree);
-      Symmetric3 quadric;
-      const glm::dvec3 at{mesh.position[p]};
-      const std::uint32_t* corners = mesh.corners.data() + mesh.first[p];
-      for (std::uint32_t i = 0; i != degree; ++i) {
-        const std::uint32_t k = corners[i] & 3U;
-        const Face& f = mesh.faces[corners[i] >> 2U];
-        const std::uint32_t next = f.point[k == 2 ? 0 : k + 1];
-        const std::uint32_t previous = f.point[k == 0 ? 2 : k - 1];
-        around.next[i] = next;
-        around.previous[i] = previous;
-        normals[i] = glm::cross(glm::dvec3{mesh.position[next]} - at, glm::dvec3{mesh.position[previous]} - at);
-      }
-      double root_of_weight = 1.0;
-      if (sharpness_power > 0.0) {
-        mesh.sharpness[p] = static_cast<float>(std::pow(sharpness_of(normals), sharpness_power));
-        root_of_weight = std::sqrt(mesh.weight_at(p));
-      }
-      for (const glm::dvec3& normal : normals) quadric.add_plane(normal * root_of_weight);
-      std::uint8_t flags = mesh.flags[p] & point_frozen;
-      if (!closed_ring(around)) flags |= add_borders(mesh, around, at, flags != 0, rules.weight, quadric);
-      if (inner_lines) flags |= add_inner_lines(mesh, rules, p, sharp_cosine, around, quadric);
-      if (rules.options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
-      mesh.flags[p] = flags;
-      quadrics[p] = quadric;
+  edges.reserve(3 * std::size_t{points.size()} + points.size() / 8);
+  Around around;
+  for (std::uint32_t p = points.begin; p != points.end; ++p) {
+    quadrics[p] = sum_point(mesh, rules, p, sharp_cosine, around);
+    for (const std::uint32_t next : around.next) {
+      if (listed_once(p, next, mesh.flags[p])) edges.push_back({0, p, next});
     }
-  });
-  return quadrics;
+  }
 }
 
-Candidates find_candidates(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement,
-                           double share, const Context& context) {
-  std::vector<std::vector<Candidate>> lists((mesh.faces.size() + face_chunk - 1) / face_chunk);
+void CostHistogram::add(const CostHistogram& other) noexcept {
+  for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+}
+
+std::uint32_t CostHistogram::limit(double share) const noexcept {
+  const auto total = std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
+  const auto wanted = static_cast<std::size_t>(std::ceil(share * static_cast<double>(total)));
+  std::uint32_t bin = 0;
+  for (std::size_t below = 0; bin < counts_.size() && below < wanted; ++bin) below += counts_[bin];
+  return bin == counts_.size() ? none : bin << shift;
+}
+
+void estimate_costs(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement, Range points,
+                    std::vector<Candidate>& edges, CostHistogram& histogram) {
   switch (placement) {
     case Placement::Optimal:
-      estimate<Placement::Optimal>(mesh, quadrics, lists, context);
-      break;
+      return estimate<Placement::Optimal>(mesh, quadrics, points, edges, histogram);
     case Placement::OnEdge:
-      estimate<Placement::OnEdge>(mesh, quadrics, lists, context);
-      break;
+      return estimate<Placement::OnEdge>(mesh, quadrics, points, edges, histogram);
     case Placement::Midpoint:
-      estimate<Placement::Midpoint>(mesh, quadrics, lists, context);
-      break;
+      return estimate<Placement::Midpoint>(mesh, quadrics, points, edges, histogram);
     case Placement::EndPoint:
     case Placement::Subset:
-      estimate<Placement::Subset>(mesh, quadrics, lists, context);
-      break;
+      return estimate<Placement::Subset>(mesh, quadrics, points, edges, histogram);
   }
-  Candidates result;
-  std::vector<std::uint32_t> histogram(std::size_t{1} << (32 - histogram_shift), 0);
-  for (const auto& list : lists) {
-    result.edge_count += list.size();
-    for (const Candidate& c : list) ++histogram[c.key >> histogram_shift];
-  }
-  const auto wanted = static_cast<std::size_t>(std::ceil(share * static_cast<double>(result.edge_count)));
-  std::uint32_t bin = 0;
-  std::size_t below = 0;
-  while (bin < histogram.size() && below < wanted) below += histogram[bin++];
-  const std::uint32_t limit = bin == histogram.size() ? none : bin << histogram_shift;
-  result.threshold = limit == none ? std::numeric_limits<float>::infinity() : std::bit_cast<float>(limit);
-  result.edges.reserve(below);
-  for (const auto& list : lists) {
-    for (const Candidate& c : list) {
-      if (c.key < limit) result.edges.push_back(c);
-    }
-  }
-  return result;
 }
 
 }  // namespace lodestone::collapse

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which edges are worth collapsing in this pass: a quick estimate for every edge, then a threshold.
+// Which edges are worth collapsing in this pass: a quick estimate for every edge, then a limit.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,6 @@ struct Candidate {
   std::uint32_t v = 0;
 };
 
-struct Candidates {
-  std::vector<Candidate> edges;  // those below the threshold, in order of faces
-  float threshold = 0.0F;        // estimated cost
-  std::size_t edge_count = 0;    // edges looked at
-};
-
 // How lines are found and weighed.
 struct LineRules {
   const Mesh& source;
@@ -31,11 +25,27 @@ struct LineRules {
   double weight = 1.0;
 };
 
-// Sums the quadric of every point over its faces and the lines there, and sets its flags.
-[[nodiscard]] std::vector<Symmetric3> sum_quadrics(WorkingMesh& mesh, const LineRules& rules, const Context& context);
+// Sums the quadric of every point in the range over its faces and the lines there, sets its flags, and adds its edges
+// to `edges`, costs unknown. Ranges may be summed at once.
+void sum_quadrics(WorkingMesh& mesh, const LineRules& rules, Range points, std::vector<Symmetric3>& quadrics,
+                  std::vector<Candidate>& edges);
 
-// The `share` (0..1) of edges with the least estimated cost.
-[[nodiscard]] Candidates find_candidates(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics,
-                                         Placement placement, double share, const Context& context);
+// How many edges cost how much, in steps of a sixteenth.
+class CostHistogram {
+ public:
+  void add(std::uint32_t key) noexcept { ++counts_[key >> shift]; }
+  void add(const CostHistogram& other) noexcept;
+  // Keys below this belong to the `share` (0..1) of least cost.
+  [[nodiscard]] std::uint32_t limit(double share) const noexcept;
+
+ private:
+  static constexpr std::uint32_t shift = 19;  // what is left: exponent and 4 bits of mantissa
+  std::vector<std::uint32_t> counts_ = std::vector<std::uint32_t>(std::size_t{1} << (32 - shift), 0);
+};
+
+// Estimates and counts the edges that sum_quadrics() listed for the range, once it is done for all, and drops those
+// that can never collapse here: both ends frozen, or the other end outside the range.
+void estimate_costs(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement, Range points,
+                    std::vector<Candidate>& edges, CostHistogram& histogram);
 
 }  // namespace lodestone::collapse

@@ -214,14 +214,14 @@ Refusal Collapser::choose_place() {
     if (!found) found = try_place(u_better ? star_.e : zero);
   }
   if (!found) return Refusal::Flip;
-  cost_ = infinity;
-  error_m_ = error_m();
-  if (error_m_ > state_.options.max_error_m) return Refusal::Cost;
   cost_ = choice_.cost;
   if (cost_ > cost_limit_) return Refusal::Cost;
   cost_ += wedges_.plan(star_, choice_);
   if (cost_ > cost_limit_) return Refusal::Cost;
-  return Refusal::None;
+  error_m_ = error_m();
+  if (!(error_m_ > state_.options.max_error_m)) return Refusal::None;
+  cost_ = infinity;
+  return Refusal::Cost;
 }
 
 float Collapser::error_m() const {

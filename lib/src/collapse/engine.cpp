@@ -53,8 +53,9 @@ class Engine {
   struct Region {
     Range points;
     std::vector<Candidate> edges;
+    CostHistogram costs;
     PassLog log;
-    std::vector<std::uint32_t> order;
+    PassLog sorted;  // the log's records by their keys
     std::array<std::uint32_t, refusal_count> refusals{};
   };
 
@@ -62,9 +63,16 @@ class Engine {
   void take_deviations();
   [[nodiscard]] double quota() const { return start_.quota > 0.0 ? start_.quota : quota_share(mesh_.point_count()); }
   void cut_regions();
-  void fill_regions(const Candidates& candidates);
+  // Calls work(region) for each, several at once.
+  template <class Work>
+  void for_each_region(Work work) {
+    parallel_for_each(regions_.size(), 1, context_, [&](std::size_t i) { work(regions_[i]); });
+  }
+  void sum_all();
+  [[nodiscard]] std::uint32_t estimate_all(double share);
   void collapse_region(Region& region, PassState& state) const;
   std::uint32_t flush();
+  std::uint32_t hand_over(const PassLog& log, std::size_t begin, std::size_t end);
   bool prune(double limit_m);
   bool relax();
   bool prune_anew();
@@ -79,15 +87,16 @@ class Engine {
   const Start& start_;
   WorkingMesh mesh_;
   std::vector<Region> regions_;
+  std::vector<Symmetric3> quadrics_;                          // per point
   std::array<std::uint32_t, refusal_count> last_refusals_{};  // of the last pass
   std::uint32_t faces_left_;
   std::uint32_t pass_ = 0;
   double diagonal_m_ = 0.0;
+  double line_weight_ = line_weight;
   double error_m_ = 0.0;      // largest so far
   double pruned_to_m_ = 0.0;  // limit of the last search for parts that may go
   bool loose_ = false;
   bool last_resort_ = false;
-  bool soup_ = false;  // not manifold to begin with
   bool looks_matter_ = false;
 };
 
@@ -100,18 +109,45 @@ void Engine::cut_regions() {
   if (shift != 0) cuts.push_back(static_cast<std::uint32_t>(shift));
   for (std::uint64_t i = 1; i < count; ++i) cuts.push_back(static_cast<std::uint32_t>(points * i / count + shift));
   cuts.push_back(points);
-  regions_.clear();
   regions_.resize(cuts.size() - 1);
-  for (std::size_t i = 0; i < regions_.size(); ++i) regions_[i].points = {cuts[i], cuts[i + 1]};
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    Region& region = regions_[i];
+    region.points = {cuts[i], cuts[i + 1]};
+    region.log.clear();
+    region.refusals = {};
+  }
 }
 
-void Engine::fill_regions(const Candidates& candidates) {
-  std::vector<std::uint32_t> ends;
-  for (const Region& region : regions_) ends.push_back(region.points.end);
-  for (const Candidate& c : candidates.edges) {
-    const auto at = std::upper_bound(ends.begin(), ends.end(), c.u) - ends.begin();
-    if (c.v < ends[static_cast<std::size_t>(at)]) regions_[static_cast<std::size_t>(at)].edges.push_back(c);
-  }
+void Engine::sum_all() {
+  quadrics_.resize(mesh_.point_count());
+  if (options_.sharpness_power > 0.0) mesh_.sharpness.assign(mesh_.point_count(), 1.0F);
+  for_each_region([&](Region& region) {
+    region.edges.clear();
+    sum_quadrics(mesh_, {source_, options_, looks_matter_, line_weight_}, region.points, quadrics_, region.edges);
+  });
+}
+
+// The regions' edges keep their estimated costs; returns what the cheapest `share` of all stays below.
+std::uint32_t Engine::estimate_all(double share) {
+  for_each_region([&](Region& region) {
+    region.costs = CostHistogram{};
+    estimate_costs(mesh_, quadrics_, options_.placement, region.points, region.edges, region.costs);
+  });
+  CostHistogram costs;
+  for (const Region& region : regions_) costs.add(region.costs);
+  return costs.limit(share);
+}
+
+// Where the corners of an edge to come are listed must be known before its star can be fetched; most edges are out of
+// the running by then. Inlined because a compiler may take a call that only fetches for one without effect.
+[[gnu::always_inline]] inline void fetch_ahead(const WorkingMesh& mesh, const std::vector<Candidate>& edges,
+                                               std::size_t next) {
+  constexpr std::size_t distance = 6;
+  if (next + distance >= edges.size()) return;
+  const Candidate& c = edges[next + distance];
+  if (((mesh.flags[c.u] | mesh.flags[c.v]) & point_locked) != 0) return;
+  __builtin_prefetch(&mesh.corners[mesh.first[c.u]]);
+  __builtin_prefetch(&mesh.corners[mesh.first[c.v]]);
 }
 
 void Engine::collapse_region(Region& region, PassState& state) const {
@@ -135,6 +171,7 @@ void Engine::collapse_region(Region& region, PassState& state) const {
     const double cost = from_list ? listed : later.top().first;
     const std::size_t at = from_list ? next++ : later.top().second;
     if (!from_list) later.pop();
+    fetch_ahead(state.mesh, region.edges, next);
     const Candidate& c = region.edges[at];
     const auto step = static_cast<std::uint32_t>(region.log.size() * key_steps / quota);
     const std::uint32_t key = step << 24U | (c.u - region.points.begin) >> 6U;
@@ -143,10 +180,10 @@ void Engine::collapse_region(Region& region, PassState& state) const {
     if (refusal == Refusal::Cost && std::isfinite(collapser.cost()))
       later.emplace(collapser.cost() / slack * (1.0 + 1e-9), at);
   }
-  region.order.resize(region.log.size());
-  std::iota(region.order.begin(), region.order.end(), 0U);
-  std::stable_sort(region.order.begin(), region.order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return region.log.key(a) < region.log.key(b); });
+  std::vector<Keyed> order(region.log.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {region.log.key(i), i};
+  radix_sort(order);
+  region.sorted.assign(region.log, order);
 }
 
 // Hands the records over, cost step by cost step through all regions; returns how many collapses there were.
@@ -154,36 +191,41 @@ std::uint32_t Engine::flush() {
   std::uint32_t records = 0;
   std::vector<std::size_t> at(regions_.size(), 0);
   for (std::uint32_t step = 0; step < key_steps; ++step) {
-    for (std::size_t r = 0; r < regions_.size(); ++r) {
-      Region& region = regions_[r];
-      for (; at[r] < region.order.size() && region.log.key(region.order[at[r]]) >> 24U == step && !done(); ++at[r]) {
-        const Edit edit = region.log.edit(region.order[at[r]]);
-        sink_.record(edit);
-        error_m_ = std::max(error_m_, double{edit.error_m});
-        faces_left_ -= static_cast<std::uint32_t>(edit.faces.size());
-        ++records;
-      }
+    for (std::size_t r = 0; r < regions_.size() && !done(); ++r) {
+      const PassLog& log = regions_[r].sorted;
+      std::size_t end = at[r];
+      while (end < log.size() && log.key(end) >> 24U == step) ++end;
+      records += hand_over(log, at[r], end);
+      at[r] = end;
     }
   }
   return records;
 }
 
+// As many of the records [begin, end) as the target allows; returns their number.
+std::uint32_t Engine::hand_over(const PassLog& log, std::size_t begin, std::size_t end) {
+  while (end > begin + 1 && log.face_count(begin, end - 1) >= faces_left_ - options_.target_triangles) --end;
+  sink_.records(log, begin, end);
+  for (std::size_t i = begin; i != end; ++i) error_m_ = std::max(error_m_, double{log.error_m(i)});
+  faces_left_ -= log.face_count(begin, end);
+  return static_cast<std::uint32_t>(end - begin);
+}
+
 bool Engine::pass(double share) {
   compact(mesh_, context_);
-  double lines = soup_ ? soup_line_weight : line_weight;
-  std::vector<Symmetric3> quadrics = sum_quadrics(mesh_, {source_, options_, looks_matter_, lines}, context_);
+  cut_regions();
+  sum_all();
   if (pass_ == 0 &&
       std::any_of(mesh_.flags.begin(), mesh_.flags.end(), [](std::uint8_t f) { return (f & point_complex) != 0; })) {
-    soup_ = true;
     loose_ = true;  // contacts come and go there anyway
-    lines = soup_line_weight;
-    quadrics = sum_quadrics(mesh_, {source_, options_, looks_matter_, lines}, context_);
+    line_weight_ = soup_line_weight;
+    sum_all();
   }
-  const Candidates candidates = find_candidates(mesh_, quadrics, options_.placement, share, context_);
-  if (context_.cancelled() || candidates.edges.empty()) return false;
+  const std::uint32_t limit = estimate_all(share);
+  if (context_.cancelled()) return false;
   PassState state{.mesh = mesh_, .source = source_, .options = options_};
   state.diagonal_m = diagonal_m_;
-  state.line_weight = lines;
+  state.line_weight = line_weight_;
   state.looks_matter = looks_matter_;
   state.loose = loose_;
   state.last_resort = last_resort_;
@@ -191,10 +233,9 @@ bool Engine::pass(double share) {
   state.share = quota();
   state.stamps.assign(mesh_.point_count(), 0);
   state.last_key.assign(mesh_.point_count(), 0);
-  cut_regions();
-  fill_regions(candidates);
-  parallel_chunks(regions_.size(), 1, context_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i != end; ++i) collapse_region(regions_[i], state);
+  for_each_region([&](Region& region) {
+    std::erase_if(region.edges, [limit](const Candidate& c) { return c.key >= limit; });
+    collapse_region(region, state);
   });
   if (context_.cancelled()) return false;
   ++pass_;
@@ -225,11 +266,7 @@ bool Engine::prune(double limit_m) {
   limit_m = std::min(limit_m, options_.max_error_m);
   pruned_to_m_ = limit_m;
   error_m_ = std::max(error_m_, double{prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, log)});
-  for (std::size_t i = 0; i < log.size() && !done(); ++i) {
-    const Edit edit = log.edit(i);
-    sink_.record(edit);
-    faces_left_ -= static_cast<std::uint32_t>(edit.faces.size());
-  }
+  hand_over(log, 0, log.size());
   return log.size() != 0;
 }
 

@@ -14,6 +14,10 @@ class Sink {
  public:
   virtual ~Sink() = default;
   virtual void record(const Edit& edit) = 0;
+  // Records [begin, end) of the log, in order; for sinks that can take many at once.
+  virtual void records(const PassLog& log, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i) record(log.edit(i));
+  }
 };
 
 // For sinks that keep a mesh up to date: gives the moved vertices their new values.

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "collapse/weights.h"
+#include "geometry/distance.h"
 
 namespace lodestone::collapse {
 namespace {
@@ -19,6 +20,17 @@ double reach_squared(const Star& star) {
   double reach = glm::dot(star.e, star.e);
   for (const StarFace& f : star.faces) reach = std::max({reach, glm::dot(f.at_a, f.at_a), glm::dot(f.at_b, f.at_b)});
   return reach;
+}
+
+// Whether a place is farther from the faces around the edge than half the edge: a spike, of which their planes say
+// nothing.
+bool sticks_out(const Star& star, const glm::dvec3& y) {
+  const double near2 = 0.25 * glm::dot(star.e, star.e);
+  if (squared_distance_to_segment(y, glm::dvec3{0.0}, star.e) <= near2) return false;
+  return std::none_of(star.faces.begin(), star.faces.end(), [&](const StarFace& f) {
+    const glm::dvec3 near = f.side == Side::V ? star.e : glm::dvec3{0.0};
+    return squared_distance_to_triangle(y, near, f.at_a, f.at_b) <= near2;
+  });
 }
 
 // The minimum under the volume constraint, which holds only where the surface is closed around the edge.
@@ -31,7 +43,7 @@ glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
   // Slivers that are almost without area say nothing about the place.
   if (!solve.valid() || quadric.a.trace() < 1e-20 * reach * reach) return 0.5 * star.e;
   const glm::dvec3 free = solve(quadric.b + (0.5 * pull) * star.e);
-  if (!(glm::dot(free, free) <= reach)) return 0.5 * star.e;
+  if (!(glm::dot(free, free) <= reach) || sticks_out(star, free)) return 0.5 * star.e;
   if (!star.plain) return free;
   const glm::dvec3 along = solve(quadric.volume_normal);
   const double slope = glm::dot(quadric.volume_normal, along);
@@ -39,7 +51,7 @@ glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
   // away.
   if (!(slope * a.trace() > 1e-3 * glm::dot(quadric.volume_normal, quadric.volume_normal))) return free;
   const glm::dvec3 kept = free + along * ((quadric.volume - glm::dot(quadric.volume_normal, free)) / slope);
-  return glm::dot(kept, kept) <= reach ? kept : free;
+  return glm::dot(kept, kept) <= reach && !sticks_out(star, kept) ? kept : free;
 }
 
 }  // namespace

@@ -6,8 +6,9 @@ namespace {
 
 bool inside(Range region, std::uint32_t p) { return p - region.begin < region.end - region.begin; }
 
-// Most of the time here is waiting for faces, so all are asked for before the first is looked at.
-void fetch_faces(const WorkingMesh& mesh, std::uint32_t point) {
+// Most of the time here is waiting for faces, so all are asked for before the first is looked at. Inlined because a
+// compiler may take a call that only fetches for one without effect.
+[[gnu::always_inline]] inline void fetch_faces(const WorkingMesh& mesh, std::uint32_t point) {
   for (std::uint32_t i = mesh.first[point]; i != mesh.first[point + 1]; ++i) {
     __builtin_prefetch(&mesh.faces[mesh.corners[i] >> 2U]);
   }

@@ -64,7 +64,9 @@ class Solver3 {
     determinant_ = m.xx * adjugate_.xx + m.xy * adjugate_.xy + m.xz * adjugate_.xz;
   }
   [[nodiscard]] bool valid() const noexcept { return determinant_ > 0.0; }
-  [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& b) const noexcept { return (adjugate_ * b) / determinant_; }
+  [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& b) const noexcept {
+    return (adjugate_ * b) * (1.0 / determinant_);
+  }
 
  private:
   Symmetric3 adjugate_;

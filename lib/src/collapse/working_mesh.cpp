@@ -38,14 +38,63 @@ std::vector<std::uint32_t> morton_order(const Mesh& source, const Weld& weld) {
   return order;
 }
 
-void sort_faces(std::vector<Face>& faces, std::uint32_t point_count) {
+// Calls work(begin, count) on each thread for its share of the points. Who walks through all faces and takes what
+// belongs to its points comes across it in the same order, however many threads there are.
+template <class Work>
+void share_points(std::uint32_t point_count, const Context& context, Work work) {
+  const auto workers = static_cast<std::uint32_t>(worker_count(context));
+  parallel_chunks(point_count, point_count / workers + 1, context, [&](std::size_t begin, std::size_t end) {
+    work(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin));
+  });
+}
+
+// Calls visit(point, 4 * position of the face + k) for all corners, those of a point in ascending order.
+template <class Visit>
+void for_each_corner(const WorkingMesh& mesh, const Context& context, Visit visit) {
+  share_points(mesh.point_count(), context, [&](std::uint32_t begin, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t p = mesh.faces[i].point[k];
+        if (p - begin < count) visit(p, 4 * i + k);
+      }
+    }
+  });
+}
+
+void sort_faces(std::vector<Face>& faces, std::uint32_t point_count, const Context& context) {
   std::vector<std::uint32_t> at(std::size_t{point_count} + 1, 0);
   const auto key = [](const Face& f) { return std::min({f.point[0], f.point[1], f.point[2]}); };
   for (const Face& f : faces) ++at[key(f) + 1];
   std::partial_sum(at.begin(), at.end(), at.begin());
   std::vector<Face> sorted(faces.size());
-  for (const Face& f : faces) sorted[at[key(f)]++] = f;
+  share_points(point_count, context, [&](std::uint32_t begin, std::uint32_t count) {
+    for (const Face& f : faces) {
+      if (key(f) - begin < count) sorted[at[key(f)]++] = f;
+    }
+  });
   faces.swap(sorted);
+}
+
+// All faces of the source that have three points.
+std::vector<Face> make_faces(const Mesh& source, const Weld& weld, const Context& context,
+                             std::vector<FaceId>& degenerate) {
+  constexpr std::size_t chunk = 16'384;
+  std::vector<Face> faces(source.triangle_count());
+  parallel_chunks(faces.size(), chunk, context, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f != end; ++f) {
+      const VertexId* v = &source.indices[3 * f];
+      for (std::uint32_t k = 0; k < 3; ++k) faces[f].point[k] = weld.point_of[v[k]];
+      faces[f].id = static_cast<FaceId>(f);
+    }
+  });
+  const auto flat = [](const Face& f) {
+    return f.point[0] == f.point[1] || f.point[1] == f.point[2] || f.point[2] == f.point[0];
+  };
+  for (const Face& f : faces) {
+    if (flat(f)) degenerate.push_back(f.id);
+  }
+  if (!degenerate.empty()) std::erase_if(faces, flat);
+  return faces;
 }
 
 void add_wedges(WorkingMesh& mesh, const Mesh& source, const std::vector<std::uint32_t>& point_of) {
@@ -122,18 +171,9 @@ WorkingMeshStart make_working_mesh(const Mesh& source, const EdgeCollapseOptions
     mesh.position[i] = glm::vec3{source.vertices.positions[weld.first_vertex[order[i]]]};
   }
   for (std::uint32_t& p : weld.point_of) p = rank[p];
-  mesh.faces.reserve(source.triangle_count());
-  for (FaceId f = 0; f < source.triangle_count(); ++f) {
-    if (collapsed(weld, &source.indices[3 * std::size_t{f}])) {
-      start.degenerate.push_back(f);
-      continue;
-    }
-    Face face;
-    face.id = f;
-    for (std::uint32_t k = 0; k < 3; ++k) face.point[k] = weld.point_of[source.indices[3 * std::size_t{f} + k]];
-    mesh.faces.push_back(face);
-  }
-  sort_faces(mesh.faces, mesh.point_count());
+  mesh.faces = make_faces(source, weld, context, start.degenerate);
+  sort_faces(mesh.faces, mesh.point_count(), context);
+  if (context.cancelled()) mesh.faces.clear();  // half done
   mesh.deviation_m.assign(mesh.point_count(), 0.0F);
   mesh.flags.assign(mesh.point_count(), 0);
   for (std::size_t v = 0; v < options.frozen.size(); ++v) {
@@ -147,9 +187,7 @@ WorkingMeshStart make_working_mesh(const Mesh& source, const EdgeCollapseOptions
 void compact(WorkingMesh& mesh, const Context& context) {
   std::erase_if(mesh.faces, [](const Face& f) { return f.id == none; });
   std::vector<std::uint32_t> uses(std::size_t{mesh.point_count()}, 0);
-  for (const Face& f : mesh.faces) {
-    for (const std::uint32_t p : f.point) ++uses[p];
-  }
+  for_each_corner(mesh, context, [&](std::uint32_t p, std::uint32_t) { ++uses[p]; });
   const auto live = static_cast<std::uint32_t>(std::count_if(uses.begin(), uses.end(), [](auto n) { return n != 0; }));
   if (live < mesh.point_count() - mesh.point_count() / 4) {
     drop_points(mesh, uses);
@@ -160,10 +198,7 @@ void compact(WorkingMesh& mesh, const Context& context) {
   std::partial_sum(uses.begin(), uses.end(), mesh.first.begin() + 1);
   mesh.corners.resize(3 * mesh.faces.size());
   std::copy(mesh.first.begin(), mesh.first.end() - 1, uses.begin());
-  static_cast<void>(context);
-  for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) {
-    for (std::uint32_t k = 0; k < 3; ++k) mesh.corners[uses[mesh.faces[i].point[k]]++] = 4 * i + k;
-  }
+  for_each_corner(mesh, context, [&](std::uint32_t p, std::uint32_t corner) { mesh.corners[uses[p]++] = corner; });
 }
 
 }  // namespace lodestone::collapse

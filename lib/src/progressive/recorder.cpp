@@ -9,113 +9,13 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <set>
 #include <utility>
 
+#include "base/parallel.h"
 #include "progressive/record.h"
 #include "progressive/values.h"
 
 namespace lodestone::progressive {
-
-void EditLog::begin(float error_m) { records_.push_back({error_m, 0, 0, 0, 0}); }
-void EditLog::remove_face(FaceId face) { faces_.push_back(face); }
-void EditLog::remove_vertex(VertexId vertex, VertexId merges_into) { vertices_.push_back({vertex, merges_into}); }
-void EditLog::repoint(CornerId corner, VertexId to) { corners_.push_back({corner, to}); }
-
-void EditLog::move_vertex(VertexId vertex, std::span<const std::uint32_t> words) {
-  assert(words.size() == value_words_);
-  moved_.push_back(vertex);
-  values_.insert(values_.end(), words.begin(), words.end());
-}
-
-void EditLog::end() {
-  const auto size = [](const auto& array) { return static_cast<std::uint32_t>(array.size()); };
-  Record& record = records_.back();
-  record.faces_end = size(faces_);
-  record.vertices_end = size(vertices_);
-  record.corners_end = size(corners_);
-  record.moves_end = size(moved_);
-}
-
-void EditLog::join_from(std::uint32_t first) {
-  if (first + 1 >= record_count()) return;
-  const Record before = first == 0 ? Record{} : records_[first - 1];
-  Record joined{};
-  for (std::uint32_t i = first; i < record_count(); ++i) joined.error_m = std::max(joined.error_m, records_[i].error_m);
-
-  // What is gone at the end need not have been changed on the way, and of several changes the last one counts.
-  const std::set<FaceId> gone(faces_.begin() + before.faces_end, faces_.end());
-  std::map<VertexId, VertexId> merged;
-  for (std::size_t i = before.vertices_end; i < vertices_.size(); ++i)
-    merged[vertices_[i].vertex] = vertices_[i].merges_into;
-  std::map<CornerId, VertexId> corners;
-  for (std::size_t i = before.corners_end; i < corners_.size(); ++i) corners[corners_[i].corner] = corners_[i].to;
-  std::map<VertexId, std::size_t> moves;  // where the last value stands
-  for (std::size_t i = before.moves_end; i < moved_.size(); ++i) moves[moved_[i]] = i;
-
-  for (std::size_t i = before.vertices_end; i < vertices_.size(); ++i) {
-    VertexId& onto = vertices_[i].merges_into;
-    for (auto at = merged.find(onto); at != merged.end() && at->second != none && at->second != onto;
-         at = merged.find(onto)) {
-      onto = at->second;
-    }
-  }
-  corners_.resize(before.corners_end);
-  for (const auto& [corner, to] : corners) {
-    if (!gone.contains(corner / 3)) corners_.push_back({corner, to});
-  }
-  const std::vector<std::uint32_t> values(values_.begin() + std::ptrdiff_t{value_words_} * before.moves_end,
-                                          values_.end());
-  moved_.resize(before.moves_end);
-  values_.resize(std::size_t{value_words_} * before.moves_end);
-  for (const auto& [vertex, at] : moves) {
-    if (merged.contains(vertex)) continue;
-    const auto from =
-        values.begin() + std::ptrdiff_t{value_words_} * static_cast<std::ptrdiff_t>(at - before.moves_end);
-    moved_.push_back(vertex);
-    values_.insert(values_.end(), from, from + value_words_);
-  }
-  records_.resize(first);
-  records_.push_back(joined);
-  end();
-}
-
-void EditLog::merge(const EditLog& other, FaceId first_face, VertexId first_vertex, std::uint64_t most_faces_gone) {
-  EditLog both{value_words_};
-  const auto take = [&](const EditLog& log, std::uint32_t i, FaceId face, VertexId vertex, float error_m) {
-    const Record from = i == 0 ? Record{} : log.records_[i - 1];
-    const Record& to = log.records_[i];
-    both.begin(error_m);
-    for (std::uint32_t k = from.faces_end; k < to.faces_end; ++k) both.remove_face(face + log.faces_[k]);
-    for (std::uint32_t k = from.vertices_end; k < to.vertices_end; ++k) {
-      const auto [v, into] = log.vertices_[k];
-      both.remove_vertex(vertex + v, into == none ? none : vertex + into);
-    }
-    for (std::uint32_t k = from.corners_end; k < to.corners_end; ++k) {
-      both.repoint(3 * face + log.corners_[k].corner, vertex + log.corners_[k].to);
-    }
-    for (std::uint32_t k = from.moves_end; k < to.moves_end; ++k) {
-      both.move_vertex(vertex + log.moved_[k], {&log.values_[std::size_t{k} * value_words_], value_words_});
-    }
-    both.end();
-  };
-  float mine_m = 0.0F;
-  float other_m = 0.0F;
-  for (std::uint32_t i = 0, k = 0; i < record_count() || k < other.record_count();) {
-    if (both.faces_.size() >= most_faces_gone) break;
-    const float next_mine = i < record_count() ? std::max(mine_m, records_[i].error_m) : 0.0F;
-    const float next_other = k < other.record_count() ? std::max(other_m, other.records_[k].error_m) : 0.0F;
-    if (k == other.record_count() || (i < record_count() && next_mine <= next_other)) {
-      mine_m = next_mine;
-      take(*this, i++, 0, 0, mine_m);
-    } else {
-      other_m = next_other;
-      take(other, k++, first_face, first_vertex, other_m);
-    }
-  }
-  *this = std::move(both);
-}
 
 namespace {
 
@@ -161,8 +61,9 @@ std::vector<ErrorStep> error_steps(const std::vector<float>& errors) {
 // Replays the log once in its own order (coarsening) and writes the stack back to front.
 class Recorder {
  public:
-  Recorder(const Mesh& source, EditLog&& log)
+  Recorder(const Mesh& source, EditLog&& log, const Context& context)
       : source_(source),
+        context_(context),
         log_(std::move(log)),
         indices_(source.indices),
         vertex_slot_(source.vertex_count(), none),
@@ -197,19 +98,19 @@ class Recorder {
   // What one record holds, as ranges of the log's arrays.
   struct Spans {
     std::span<FaceId> faces;
-    std::span<EditLog::RemovedVertex> vertices;
-    std::span<EditLog::Repointed> corners;
+    std::span<RemovedVertex> vertices;
+    std::span<RepointedCorner> corners;
     std::uint32_t first_move = 0, moves_end = 0;
   };
 
   [[nodiscard]] Spans spans(std::uint32_t i) {
-    const EditLog::Record from = i == 0 ? EditLog::Record{} : log_.records_[i - 1];
-    const EditLog::Record& to = log_.records_[i];
-    return {{log_.faces_.begin() + from.faces_end, log_.faces_.begin() + to.faces_end},
-            {log_.vertices_.begin() + from.vertices_end, log_.vertices_.begin() + to.vertices_end},
-            {log_.corners_.begin() + from.corners_end, log_.corners_.begin() + to.corners_end},
-            from.moves_end,
-            to.moves_end};
+    const RecordEnds from = i == 0 ? RecordEnds{} : log_.records_[i - 1];
+    const RecordEnds& to = log_.records_[i];
+    return {{log_.faces_.begin() + from.faces, log_.faces_.begin() + to.faces},
+            {log_.vertices_.begin() + from.vertices, log_.vertices_.begin() + to.vertices},
+            {log_.corners_.begin() + from.corners, log_.corners_.begin() + to.corners},
+            from.moves,
+            to.moves};
   }
 
   // Base vertices first in source order, then record by record in refining order, each after what it merges into.
@@ -235,7 +136,7 @@ class Recorder {
 
   // Gives slots to the vertices of one record and sorts its span by them. A cycle of targets is cut: its last one
   // merges into itself.
-  void order_removed(std::span<EditLog::RemovedVertex> removed, std::vector<std::uint32_t>& place) {
+  void order_removed(std::span<RemovedVertex> removed, std::vector<std::uint32_t>& place) {
     if (removed.size() == 1) {
       if (removed[0].merges_into == none) removed[0].merges_into = removed[0].vertex;
       give_slot(removed[0].vertex);
@@ -265,8 +166,16 @@ class Recorder {
     for (const auto& r : removed) place[r.vertex] = none;
   }
 
-  // Brings near what encode() reads at random: most of its time is waiting for these.
-  void fetch(const Spans& record) const {
+  // Brings near what encode() reads at random: most of its time is waiting for these. Inlined because a compiler may
+  // take a call that only fetches for one without effect.
+  [[gnu::always_inline]] void fetch(const Spans& record) const {
+    for (std::uint32_t m = record.first_move; m < record.moves_end; ++m) {
+      const VertexId v = log_.moved_[m];
+      __builtin_prefetch(&vertex_slot_[v]);
+      __builtin_prefetch(&values_.positions[v], 1);
+      if (!values_.normals.empty()) __builtin_prefetch(&values_.normals[v], 1);
+      if (!values_.uvs.empty()) __builtin_prefetch(&values_.uvs[v], 1);
+    }
     for (const FaceId face : record.faces) {
       __builtin_prefetch(&indices_[3 * static_cast<std::size_t>(face)]);
       __builtin_prefetch(&rotation_[face], 1);
@@ -517,15 +426,16 @@ class Recorder {
     constexpr std::uint64_t three_byte_corners = 1ULL << 24U;
     data_.corner_bytes = source_.indices.size() <= three_byte_corners ? 3 : 4;
     data_.fan_corners.resize(data_.corner_bytes * fan_corners_.size());
-    std::uint8_t* out = data_.fan_corners.data();
-    constexpr std::size_t corners_ahead = 4 * fetch_ahead;
-    for (std::size_t i = 0; i < fan_corners_.size(); ++i) {
-      if (i + corners_ahead < fan_corners_.size())
-        __builtin_prefetch(&first_corner_[fan_corners_[i + corners_ahead] / 3]);
-      const CornerId slot = slot_corner(fan_corners_[i]);
-      std::memcpy(out, &slot, data_.corner_bytes);
-      out += data_.corner_bytes;
-    }
+    parallel_chunks(fan_corners_.size(), chunk, context_, [&](std::size_t begin, std::size_t end) {
+      std::uint8_t* out = &data_.fan_corners[data_.corner_bytes * begin];
+      constexpr std::size_t corners_ahead = 4 * fetch_ahead;
+      for (std::size_t i = begin; i != end; ++i) {
+        if (i + corners_ahead < end) __builtin_prefetch(&first_corner_[fan_corners_[i + corners_ahead] / 3]);
+        const CornerId slot = slot_corner(fan_corners_[i]);
+        std::memcpy(out, &slot, data_.corner_bytes);
+        out += data_.corner_bytes;
+      }
+    });
     std::reverse(data_.fan_materials.begin(), data_.fan_materials.end());
     for (std::size_t at = 0; at < data_.edits.size(); at += data_.edits[at]) {
       const EditBlock block{&data_.edits[at]};
@@ -540,8 +450,8 @@ class Recorder {
     const VertexArrays& from = log_.moved_.empty() ? source_.vertices : values_;
     const auto permute = [&](const auto& in, auto& out) {
       if (in.empty()) return;
-      out.reserve(in.size());
-      for (const VertexId v : vertex_of_slot_) out.push_back(in[v]);
+      out.resize(in.size());
+      parallel_for_each(in.size(), chunk, context_, [&](std::size_t slot) { out[slot] = in[vertex_of_slot_[slot]]; });
     };
     permute(from.positions, data_.vertices.positions);
     permute(from.normals, data_.vertices.normals);
@@ -550,11 +460,13 @@ class Recorder {
   }
 
   static constexpr std::size_t max_value_words = 9;
-  static constexpr std::uint8_t in_use = 3;        // rotation of a face that no record removed yet
-  static constexpr std::uint32_t fetch_ahead = 8;  // records
-  static constexpr VertexId pending = none - 1;    // slot of a vertex whose target is looked up
+  static constexpr std::size_t chunk = 16'384;      // of what is done on all threads
+  static constexpr std::uint8_t in_use = 3;         // rotation of a face that no record removed yet
+  static constexpr std::uint32_t fetch_ahead = 12;  // records
+  static constexpr VertexId pending = none - 1;     // slot of a vertex whose target is looked up
 
   const Mesh& source_;
+  const Context& context_;
   EditLog log_;
   ModelData data_;
   std::vector<VertexId> indices_;         // of the level reached, in the source's numbering
@@ -564,14 +476,14 @@ class Recorder {
   std::vector<CornerId> first_corner_;    // of each source face: 3 times its slot, plus its rotation
   std::vector<std::uint8_t> rotation_;    // corner of the source face that is corner 0 of its slot, or in_use
   std::vector<CornerId> fan_corners_;     // source corners, last record first until reversed
-  std::vector<EditLog::Repointed> corners_;
+  std::vector<RepointedCorner> corners_;
   std::vector<std::uint32_t> moves_;
   std::vector<std::uint32_t> scratch_;
 };
 
-ModelData record(const Mesh& source, EditLog&& log, std::string method) {
+ModelData record(const Mesh& source, EditLog&& log, std::string method, const Context& context) {
   assert(!source.materials.empty() || source.triangle_count() == 0);
-  return Recorder{source, std::move(log)}.run(std::move(method));
+  return Recorder{source, std::move(log), context}.run(std::move(method));
 }
 
 }  // namespace lodestone::progressive

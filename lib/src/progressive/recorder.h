@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <lodestone/context.h>
 #include <lodestone/progressive_model.h>
+
+#include "base/edit_run.h"
 
 namespace lodestone::progressive {
 
@@ -40,32 +43,24 @@ class EditLog {
   // `most_faces_gone` are gone.
   void merge(const EditLog& other, FaceId first_face, VertexId first_vertex, std::uint64_t most_faces_gone);
 
+  void append(const EditRun& run);
+
   [[nodiscard]] std::uint32_t record_count() const noexcept { return static_cast<std::uint32_t>(records_.size()); }
 
  private:
   friend class Recorder;
-  struct Record {
-    float error_m;
-    std::uint32_t faces_end, vertices_end, corners_end, moves_end;  // ends in the arrays below
-  };
-  struct RemovedVertex {
-    VertexId vertex, merges_into;
-  };
-  struct Repointed {
-    CornerId corner;
-    VertexId to;
-  };
   std::uint32_t value_words_;
-  std::vector<Record> records_;
+  std::vector<RecordEnds> records_;
   std::vector<FaceId> faces_;
   std::vector<RemovedVertex> vertices_;
-  std::vector<Repointed> corners_;
+  std::vector<RepointedCorner> corners_;
   std::vector<VertexId> moved_;
   std::vector<std::uint32_t> values_;
 };
 
 // Sorts slots, encodes fans and edits, quantises errors to steps (rounded up, at most 0.2 % apart) and returns the
 // data of a model whose finest level is `source`, face for face. O(log + mesh).
-[[nodiscard]] ModelData record(const Mesh& source, EditLog&& log, std::string method);
+// Cancelling leaves it undone: ask context.cancelled() afterwards.
+[[nodiscard]] ModelData record(const Mesh& source, EditLog&& log, std::string method, const Context& context = {});
 
 }  // namespace lodestone::progressive
