@@ -3,10 +3,12 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <thread>
 
 #include "version.h"
 
@@ -28,10 +30,14 @@ std::uint64_t peak_rss_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// Memory beyond the limit is refused by the system, and the program ends with one line instead of swapping.
-void limit_memory(std::uint64_t bytes) {
+// Memory beyond the limit is refused by the system, and the program ends with one line instead of swapping. The system
+// counts what is reserved, whole stacks of threads too, of which hardly a page is ever used: they come on top.
+void limit_memory(std::uint64_t bytes, unsigned threads) {
   if (bytes == 0) return;
-  const rlimit limit{bytes, bytes};
+  constexpr std::uint64_t stack_bytes = 8U << 20U;
+  const unsigned workers = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+  const std::uint64_t reserved = bytes + workers * stack_bytes;
+  const rlimit limit{reserved, reserved};
   ::setrlimit(RLIMIT_DATA, &limit);
 }
 
@@ -53,7 +59,7 @@ void catch_signals() {
 
 Session::Session(const Common& common)
     : common_(common), bar_(common.quiet ? ProgressBar::Show::Never : ProgressBar::Show::OnTerminal) {
-  limit_memory(common.max_memory_bytes);
+  limit_memory(common.max_memory_bytes, common.threads);
   context_.cancel = &cancel_requested;
   context_.max_workers = common.threads;
   context_.max_memory_bytes = common.max_memory_bytes;
