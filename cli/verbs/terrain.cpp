@@ -134,7 +134,8 @@ void Terrain::report(Session& session, const TerrainSummary& summary, double sec
     row.set("mean_triangles", zoom.mean_triangles);
     row.set("tolerance_m", zoom.tolerance_m);
     row.set("max_error_m", zoom.max_error_m);
-    row.set("mean_hausdorff_m", zoom.mean_error_m);  // no distance exceeds the difference in height
+    row.set("mean_max_error_m", zoom.mean_error_m);
+    row.set("mean_hausdorff_m", zoom.mean_error_m);  // from posts to triangles: no farther than the error in height
     row.set("gap_bound_m", zoom.gap_bound_m);
     report.add("zooms", row);
     char line[120];
