@@ -104,7 +104,7 @@ TEST_CASE("contrast that both pictures have hides what is added to it") {
   // A difference of 6 stands out from grey, and drowns between stripes of 60.
   CHECK(noticed(even(128), stripes(128, 6, 1)) > 0.99);
   CHECK(noticed(stripes(128, 60, 1), stripes(128, 66, 1)) == 0.0);
-  // By the exponent 0.7: with stripes of 60, 24 more are past the raised threshold.
+  // Masked, not blinded: with stripes of 60, 24 more are past the raised threshold.
   CHECK(noticed(stripes(128, 60, 1), stripes(128, 84, 1)) > 0.99);
   // Contrast of one picture alone hides nothing.
   CHECK(noticed(even(128), stripes(128, 60, 1)) > 0.99);
