@@ -43,6 +43,7 @@ class Terrain final : public Verb {
   double scale_ = 1.0;
   double offset_m_ = 0.0;
   std::optional<double> sea_level_m_;
+  std::filesystem::path water_mask_;
   std::uint32_t metadata_zooms_ = 0;
   std::string attribution_;
   bool resume_ = false;
@@ -72,6 +73,8 @@ void Terrain::declare(Arguments& arguments) {
   arguments.number("--scale", scale_, -1e6, 1e6, "Heights are samples times this");
   arguments.number("--offset", offset_m_, -1e6, 1e6, "plus this, for instance the height of the geoid");
   arguments.length_m("--sea-level", sea_level_m_, "Write a water mask: water is what lies at or below");
+  arguments.file("--water-mask", water_mask_, "Write a water mask from a raster: 1 is water, 0 or missing is land",
+                 Need::Optional);
   arguments.count("--metadata-zooms", metadata_zooms_, 0, max_terrain_zoom,
                   "Every so many zooms tiles list what is below them; 0 = layer.json lists all");
   arguments.word("--attribution", attribution_, "TEXT", "Shown by clients: whose data it is");
@@ -150,11 +153,19 @@ void Terrain::report(Session& session, const TerrainSummary& summary, double sec
 Status Terrain::run(Session& session) {
   const auto raster = raster_options();
   if (!raster) return raster.error();
-  const auto options = terrain_options();
+  auto options = terrain_options();
   if (!options) return options.error();
   auto source = open_raster(raster_, *raster);
   session.keep(source);
   if (!source) return source.error();
+  std::unique_ptr<HeightSource> water;
+  if (!water_mask_.empty()) {
+    auto mask = open_raster(water_mask_, {.voids = Voids::Fill});
+    session.keep(mask);
+    if (!mask) return mask.error();
+    water = std::move(*mask);
+    options->water = water.get();
+  }
   const auto start = std::chrono::steady_clock::now();
   const auto pyramid = TerrainPyramid::plan(**source, *options, session.context());
   if (!pyramid) {

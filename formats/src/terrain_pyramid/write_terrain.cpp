@@ -127,7 +127,7 @@ class TerrainWriter {
       north_deg = std::max(north_deg, box.north_deg);
     }
     Json extensions{"octvertexnormals"};
-    if (!std::isnan(pyramid_.options().sea_level_m)) extensions.push_back("watermask");
+    if (pyramid_.options().masks_water()) extensions.push_back("watermask");
     Json layer{{"tilejson", "2.1.0"},
                {"name", "terrain"},
                {"version", "1.0.0"},

@@ -22,6 +22,7 @@
 /// terrain tiling", with borders that need no schedule.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
@@ -154,6 +155,10 @@ struct TerrainOptions {
 
   /// Posts at or below this height are water (a mask is made), NaN: no mask.
   double sea_level_m = std::numeric_limits<double>::quiet_NaN();
+  /// Instead of a sea level: reads 1 where there is water, 0 or NaN where there is none, and may read what lies
+  /// between. Cells of a half and more are water; where there are no heights is land. Must outlive the pyramid.
+  const HeightSource* water = nullptr;
+  [[nodiscard]] bool masks_water() const noexcept { return water != nullptr || !std::isnan(sea_level_m); }
 };
 
 /// One tile: a TIN in quantised coordinates. u runs east, v north, both 0..32767 over the tile; the height of a vertex

@@ -68,6 +68,8 @@ class TerrainPlanner {
     for (const std::uint32_t divisions : options_.grid_divisions) {
       if (!std::has_single_bit(divisions) || divisions > 64) return bad("grid divisions are 1, 2, 4, ... 64");
     }
+    if (options_.water != nullptr && !std::isnan(options_.sea_level_m))
+      return bad("water is masked by height or by a source, not both");
     return check_points();
   }
 
@@ -150,6 +152,10 @@ class TerrainPlanner {
       tile.has_data = tile.has_data || !std::isnan(h + heights[i + 1] + heights[i + side] + heights[i + side + 1]);
     }
     if (low <= high) tile.min_m = low, tile.max_m = high;
+    if (options_.water == nullptr || !tile.has_data) return Done{};
+    // Coarser tiles look at every second of these posts, so this is all that masks depend on.
+    if (Status status = options_.water->read(window, heights); !status) return status;
+    for (const float water : heights) hash = hash_combine(hash, std::isnan(water) ? none : coordinate_bits(water));
     return Done{};
   }
 
@@ -280,6 +286,7 @@ class TerrainPlanner {
     add(pyramid.shared_to_zoom_);
     add(options_.shape_weight);
     add(std::isnan(options_.sea_level_m) ? std::numeric_limits<double>::infinity() : options_.sea_level_m);
+    add(options_.water == nullptr ? 0.0 : 1.0);
     return hash;
   }
 

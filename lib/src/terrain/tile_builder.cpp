@@ -24,10 +24,14 @@ T at_zoom(const std::vector<T>& values, std::uint32_t zoom) {
 
 }  // namespace
 
-Status TileBuilder::read_posts() {
+PostWindow TileBuilder::window() const {
   const std::int64_t column = std::int64_t{id_.x} * size, row = std::int64_t{id_.y} * size;
-  const PostWindow window{id_.zoom, column - 1, row - 1, TileLattice::stride, TileLattice::stride};
-  Status status = pyramid_.source_->read(window, lattice_.heights());
+  return {id_.zoom, column - 1, row - 1, TileLattice::stride, TileLattice::stride};
+}
+
+Status TileBuilder::read_posts() {
+  const std::int64_t row = std::int64_t{id_.y} * size;
+  Status status = pyramid_.source_->read(window(), lattice_.heights());
   if (!status) return status;
   // A pole is one point: its posts have one height.
   const auto level_row = [&](int y, float height_m) {
@@ -193,22 +197,31 @@ void TileBuilder::put_borders(TerrainTile& tile) const {
   std::sort(tile.north.begin(), tile.north.end(), by(tile.u));
 }
 
-void TileBuilder::put_water(TerrainTile& tile) const {
-  const double sea_level_m = pyramid_.options_.sea_level_m;
-  if (std::isnan(sea_level_m)) return;
+Status TileBuilder::put_water(TerrainTile& tile) const {
+  const TerrainOptions& options = pyramid_.options_;
+  if (!options.masks_water()) return Done{};
+  TileLattice given;
+  if (options.water != nullptr) {
+    if (Status status = options.water->read(window(), given.heights()); !status) return status;
+  }
+  const auto sum = [](const TileLattice& of, int x, int y) {
+    return static_cast<double>(of.at(x, y)) + of.at(x + 1, y) + of.at(x, y + 1) + of.at(x + 1, y + 1);
+  };
+  // Land where there is no data: comparisons with NaN are false.
+  const auto is_water = [&](int x, int y) {
+    if (options.water == nullptr) return sum(lattice_, x, y) <= 4.0 * options.sea_level_m;
+    return !placeholder_ && lattice_.cell(x, y) && sum(given, x, y) >= 2.0;
+  };
   constexpr std::uint8_t land = 0, water = 255;
   std::vector<std::uint8_t> mask;
   mask.reserve(std::size_t{size} * size);
   for (int y = size - 1; y >= 0; --y) {
-    for (int x = 0; x < size; ++x) {
-      const double sum_m = static_cast<double>(lattice_.at(x, y)) + lattice_.at(x + 1, y) + lattice_.at(x, y + 1) +
-                           lattice_.at(x + 1, y + 1);
-      mask.push_back(sum_m <= 4.0 * sea_level_m ? water : land);  // land where there is no data
-    }
+    for (int x = 0; x < size; ++x) mask.push_back(is_water(x, y) ? water : land);
   }
   const auto waters = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), water));
   if (waters == 0 || waters == mask.size()) mask.resize(1);
   tile.water = std::move(mask);
+  return Done{};
 }
 
 Result<TerrainTile> TileBuilder::build() {
@@ -225,7 +238,7 @@ Result<TerrainTile> TileBuilder::build() {
   tile.placeholder = placeholder_;
   put_vertices(made.tin, tile);
   put_borders(tile);
-  put_water(tile);
+  if (Status masked = put_water(tile); !masked) return masked.error();
   return tile;
 }
 

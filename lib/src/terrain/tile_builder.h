@@ -17,6 +17,7 @@ class TileBuilder {
   [[nodiscard]] Result<TerrainTile> build();
 
  private:
+  [[nodiscard]] PostWindow window() const;
   [[nodiscard]] Status read_posts();
   [[nodiscard]] bool shares_borders() const;
   [[nodiscard]] double border_step_m() const;
@@ -28,7 +29,7 @@ class TileBuilder {
   [[nodiscard]] terrain::MeasuredTin collapsed(terrain::GreedyOptions greedy) const;
   void put_vertices(const terrain::Tin& tin, TerrainTile& tile) const;
   void put_borders(TerrainTile& tile) const;
-  void put_water(TerrainTile& tile) const;
+  [[nodiscard]] Status put_water(TerrainTile& tile) const;
 
   const TerrainPyramid& pyramid_;
   const TerrainPyramid::Zoom& zoom_;

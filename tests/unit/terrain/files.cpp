@@ -133,6 +133,29 @@ TEST_CASE("available rectangles hold the tiles and no other") {
   for (const TileInfo& tile : tiles) CHECK(count[{tile.x, tile.y}] == 1);
 }
 
+TEST_CASE("a raster of water comes back from the bytes of a tile, and the layer names it") {
+  // Two samples of water and two of land from west to east, one marked as missing; the tile ends between them.
+  const fs::path folder = test::scratch_folder("water");
+  const auto water = open_raster(write_grid(folder, {{1, 1, 0, 0}, {1, 1, 0, 0}, {1, 1, -9999, 0}}, 0.0, 0.0, 22.5),
+                                 {.voids = Voids::Fill});
+  REQUIRE(water.ok());
+  const FormulaHeights source{[](double, double) { return 7.0; }, {0.0, 0.0, 90.0, 90.0}, 1};
+  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {200.0}, .water = water->get()});
+  REQUIRE(pyramid.ok());
+  const auto tile = pyramid->build({1, 2, 1});  // 0 to 90 degrees east and north
+  REQUIRE(tile.ok());
+  const auto mesh = decode_quantized_mesh(encode_quantized_mesh(*tile));
+  REQUIRE(mesh.ok());
+  REQUIRE(mesh->water.size() == 65536);
+  // Samples lie at 0, 22.5, ... degrees, 64 posts apart: half water at post 96, none beside what is missing.
+  CHECK(mesh->water[150 * 256 + 94] == 255);
+  CHECK(mesh->water[150 * 256 + 97] == 0);
+  CHECK(mesh->water[255 * 256 + 60] == 255);
+  CHECK(mesh->water[255 * 256 + 66] == 0);
+  REQUIRE(write_terrain(*pyramid, folder / "tiles", {}).ok());
+  CHECK(tree(folder / "tiles").at("layer.json").find("\"watermask\"") != std::string::npos);
+}
+
 TEST_CASE("posts are linear between samples; voids are skipped, filled or interpolated before scaling") {
   const fs::path folder = test::scratch_folder("raster");
   // Samples 45 / 64 degrees apart: the posts of zoom 0.

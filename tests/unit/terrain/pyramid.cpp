@@ -326,6 +326,39 @@ TEST_CASE("water is where all is at or below the sea") {
   CHECK(pyramid->build({4, 17, 8})->water == std::vector<std::uint8_t>{0});
 }
 
+TEST_CASE("water is where a second source says, not where heights are missing") {
+  const GeoBox box{0.0, 0.0, 22.5, 11.25};
+  const FormulaHeights source{[](double, double north) { return north < 3.0 ? static_cast<double>(NAN) : 100.0; }, box,
+                              4};
+  const FormulaHeights lake{[](double east, double north) { return east < 5.0 && north < 6.0 ? 1.0 : 0.0; }, box, 4};
+  const FormulaHeights other{[](double east, double north) { return east < 5.0 && north < 6.5 ? 1.0 : 0.0; }, box, 4};
+  const auto plan = [&](const HeightSource* water) {
+    auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {1.0}, .water = water});
+    REQUIRE(pyramid.ok());
+    return *pyramid;
+  };
+  const auto pyramid = plan(&lake);
+  const auto tile = pyramid.build({4, 16, 8});  // 0 to 11.25 degrees east and north
+  REQUIRE(tile.ok());
+  REQUIRE(tile->water.size() == 65536);
+  const auto water_at = [&](double east, double north) {
+    const auto column = static_cast<std::size_t>(east / 11.25 * 256.0);
+    return tile->water[(255 - static_cast<std::size_t>(north / 11.25 * 256.0)) * 256 + column];
+  };
+  CHECK(water_at(4.9, 5.9) == 255);
+  CHECK(water_at(0.0, 3.1) == 255);
+  CHECK(water_at(5.1, 5.9) == 0);
+  CHECK(water_at(4.9, 6.1) == 0);
+  CHECK(water_at(1.0, 1.0) == 0);
+  CHECK(pyramid.build({4, 17, 8})->water == std::vector<std::uint8_t>{0});
+  CHECK(pyramid.build({0, 0, 0})->water == std::vector<std::uint8_t>{0});  // west of Greenwich: no heights
+  CHECK(plan(nullptr).build({4, 16, 8})->water.empty());
+  // A run may go on only with the same mask.
+  CHECK(plan(&lake).fingerprint() == pyramid.fingerprint());
+  CHECK(plan(&other).fingerprint() != pyramid.fingerprint());
+  CHECK(TerrainPyramid::plan(source, {.sea_level_m = 0.0, .water = &lake}).error().code == ErrorCode::BadArgument);
+}
+
 TEST_CASE("a source without data and options out of range are refused") {
   const FormulaHeights nothing{[](double, double) { return static_cast<double>(NAN); }, {0.0, 0.0, 5.0, 5.0}, 3};
   CHECK(TerrainPyramid::plan(nothing, {}).error().code == ErrorCode::BadData);
