@@ -57,6 +57,58 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>{stream}, {}};
 }
 
+}  // namespace
+
+TEST_CASE("A build that is killed goes on with --resume to the same bytes") {
+  const fs::path folder = scratch_folder("stopped_killed");
+  REQUIRE(write_mesh(small_cliff(), folder / "cliff.obj"));
+  const auto words = [&](const char* to) {
+    return std::vector<std::string>{"outcrop",      (folder / "cliff.obj").string(),
+                                    "-o",           (folder / to).string(),
+                                    "--tile-bytes", "12000",
+                                    "--threads",    "1",
+                                    "--image",      "png"};
+  };
+  REQUIRE(end(start(words("whole"), folder / "log")) == 0);
+  bool killed = false;
+  for (int attempt = 0; attempt < 5 && !killed; ++attempt) {
+    fs::remove_all(folder / "cut");
+    const pid_t child = start(words("cut"), folder / "log");
+    while (!fs::exists(folder / "cut/tiles/L0_3.glb") && ::waitpid(child, nullptr, WNOHANG) == 0) ::usleep(200);
+    ::kill(child, SIGKILL);
+    static_cast<void>(end(child));
+    killed = !fs::exists(folder / "cut/tileset.json");
+  }
+  REQUIRE(killed);
+  auto again = words("cut");
+  again.insert(again.end(), {"--resume", "--json"});
+  REQUIRE(end(start(again, folder / "log")) == 0);
+  CHECK(nlohmann::json::parse(text_of(folder / "log"))["kept_tiles"].get<int>() > 0);
+  CHECK(files_of(folder / "cut") == files_of(folder / "whole"));
+}
+
+TEST_CASE("Where there is no room for a tile the program says so, leaves nothing half-written, and can go on") {
+  const fs::path folder = scratch_folder("stopped_full");
+  REQUIRE(write_mesh(small_cliff(), folder / "cliff.obj"));
+  std::vector<std::string> words{
+      "outcrop", (folder / "cliff.obj").string(), "-o", (folder / "tiles").string(), "--tile-bytes", "24000",
+      "--quiet"};
+  CHECK(end(start(words, folder / "log", {.most_file_bytes = 9'000})) == 2);
+  const std::string said = text_of(folder / "log");
+  INFO(said);
+  CHECK(said.find("lodestone: ") == 0);
+  CHECK(said.find("tiles/") != std::string::npos);  // which file
+  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
+  CHECK(!fs::exists(folder / "tiles/tileset.json"));
+  for (const auto& [name, content] : files_of(folder / "tiles")) CHECK(name.find(".part") == std::string::npos);
+  words.insert(words.end(), {"--resume"});
+  CHECK(end(start(words, folder / "log")) == 0);
+  CHECK(fs::exists(folder / "tiles/tileset.json"));
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which keeps freed memory
+namespace {
+
 // 24 patches of 200 triangles, each with its own photograph of 1024 x 1024 (one file under many names).
 fs::path patches(const fs::path& folder, int images) {
   constexpr std::uint32_t size = 1024;
@@ -112,54 +164,6 @@ double peak_mb(const fs::path& source, const std::vector<std::string>& more) {
 
 }  // namespace
 
-TEST_CASE("A build that is killed goes on with --resume to the same bytes") {
-  const fs::path folder = scratch_folder("stopped_killed");
-  REQUIRE(write_mesh(small_cliff(), folder / "cliff.obj"));
-  const auto words = [&](const char* to) {
-    return std::vector<std::string>{"outcrop",      (folder / "cliff.obj").string(),
-                                    "-o",           (folder / to).string(),
-                                    "--tile-bytes", "12000",
-                                    "--threads",    "1",
-                                    "--image",      "png"};
-  };
-  REQUIRE(end(start(words("whole"), folder / "log")) == 0);
-  bool killed = false;
-  for (int attempt = 0; attempt < 5 && !killed; ++attempt) {
-    fs::remove_all(folder / "cut");
-    const pid_t child = start(words("cut"), folder / "log");
-    while (!fs::exists(folder / "cut/tiles/L0_3.glb") && ::waitpid(child, nullptr, WNOHANG) == 0) ::usleep(200);
-    ::kill(child, SIGKILL);
-    static_cast<void>(end(child));
-    killed = !fs::exists(folder / "cut/tileset.json");
-  }
-  REQUIRE(killed);
-  auto again = words("cut");
-  again.insert(again.end(), {"--resume", "--json"});
-  REQUIRE(end(start(again, folder / "log")) == 0);
-  CHECK(nlohmann::json::parse(text_of(folder / "log"))["kept_tiles"].get<int>() > 0);
-  CHECK(files_of(folder / "cut") == files_of(folder / "whole"));
-}
-
-TEST_CASE("Where there is no room for a tile the program says so, leaves nothing half-written, and can go on") {
-  const fs::path folder = scratch_folder("stopped_full");
-  REQUIRE(write_mesh(small_cliff(), folder / "cliff.obj"));
-  std::vector<std::string> words{
-      "outcrop", (folder / "cliff.obj").string(), "-o", (folder / "tiles").string(), "--tile-bytes", "24000",
-      "--quiet"};
-  CHECK(end(start(words, folder / "log", {.most_file_bytes = 9'000})) == 2);
-  const std::string said = text_of(folder / "log");
-  INFO(said);
-  CHECK(said.find("lodestone: ") == 0);
-  CHECK(said.find("tiles/") != std::string::npos);  // which file
-  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
-  CHECK(!fs::exists(folder / "tiles/tileset.json"));
-  for (const auto& [name, content] : files_of(folder / "tiles")) CHECK(name.find(".part") == std::string::npos);
-  words.insert(words.end(), {"--resume"});
-  CHECK(end(start(words, folder / "log")) == 0);
-  CHECK(fs::exists(folder / "tiles/tileset.json"));
-}
-
-#ifndef __SANITIZE_ADDRESS__  // which keeps freed memory
 TEST_CASE("Memory does not grow with the number of images, and --max-memory holds") {
   const fs::path few = scratch_folder("stopped_few");
   const fs::path many = scratch_folder("stopped_many");
