@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "base/hash.h"
+#include "terrain/chains.h"
 #include "terrain/lattice.h"
 
 namespace lodestone::test {
@@ -61,6 +62,15 @@ inline terrain::TileLattice lattice_of(const std::function<double(int, int)>& he
     for (int x = -1; x <= terrain::size + 1; ++x) lattice.set(x, y, static_cast<float>(height_m(x, y)));
   }
   return lattice;
+}
+
+// The vertices of all four borders, as a tile without neighbours of other zooms has them.
+inline std::vector<terrain::Tin::Vertex> all_borders(const terrain::TileLattice& lattice, double tolerance_m) {
+  std::vector<terrain::Tin::Vertex> vertices;
+  for (const terrain::Side side : terrain::all_sides) {
+    for (const auto& vertex : border_vertices(lattice, side, {tolerance_m, 0.25, 1})) vertices.push_back(vertex);
+  }
+  return vertices;
 }
 
 }  // namespace lodestone::test

@@ -6,23 +6,15 @@
 #include <set>
 
 #include "heights.h"
-#include "terrain/chains.h"
 #include "terrain/feature_lines.h"
 #include "terrain/point_set.h"
 
 using namespace lodestone;
 using namespace lodestone::terrain;
+using lodestone::test::all_borders;
 using lodestone::test::lattice_of;
 
 namespace {
-
-std::vector<Tin::Vertex> all_borders(const TileLattice& lattice, double tolerance_m) {
-  std::vector<Tin::Vertex> vertices;
-  for (const Side side : all_sides) {
-    for (const Tin::Vertex& vertex : border_vertices(lattice, side, {tolerance_m, 0.25, 1})) vertices.push_back(vertex);
-  }
-  return vertices;
-}
 
 // On the border, as (u, v, height).
 std::set<std::array<double, 3>> border_of(const Tin& tin) {

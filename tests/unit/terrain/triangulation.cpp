@@ -5,24 +5,16 @@
 #include <set>
 
 #include "heights.h"
-#include "terrain/chains.h"
 #include "terrain/delaunay.h"
 #include "terrain/edge_collapse.h"
 #include "terrain/greedy.h"
 
 using namespace lodestone;
 using namespace lodestone::terrain;
+using lodestone::test::all_borders;
 using lodestone::test::lattice_of;
 
 namespace {
-
-std::vector<Tin::Vertex> all_borders(const TileLattice& lattice, double tolerance_m) {
-  std::vector<Tin::Vertex> vertices;
-  for (const Side side : all_sides) {
-    for (const Tin::Vertex& vertex : border_vertices(lattice, side, {tolerance_m, 0.25, 1})) vertices.push_back(vertex);
-  }
-  return vertices;
-}
 
 TileLattice hills() {
   return lattice_of([](int x, int y) { return test::ranges_m(0.02 * x + 40.0, 0.02 * y + 12.0); });
