@@ -15,6 +15,7 @@
 #include <cmath>
 #include <optional>
 
+#include "collapse/symmetric3.h"
 #include "terrain/error.h"
 
 namespace lodestone::terrain {
@@ -28,29 +29,19 @@ constexpr std::uint32_t prev_of(std::uint32_t edge) { return edge % 3 == 0 ? edg
 // Sums over triangles of n n', n d, d d, n and d, where n is a triangle's normal (twice its area long) and d its
 // distance from the origin along it: n'x - d is six times the volume between the triangle and x.
 struct Volumes {
-  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  collapse::Symmetric3 nn;
   glm::dvec3 nd{0.0}, n{0.0};
   double dd = 0, d = 0;
 
   void add(const glm::dvec3& normal, double distance, double times = 1.0) {
-    xx += times * normal.x * normal.x;
-    xy += times * normal.x * normal.y;
-    xz += times * normal.x * normal.z;
-    yy += times * normal.y * normal.y;
-    yz += times * normal.y * normal.z;
-    zz += times * normal.z * normal.z;
+    nn.add_plane(normal, times);
     nd += times * distance * normal;
     n += times * normal;
     dd += times * distance * distance;
     d += times * distance;
   }
   void add(const Volumes& other) {
-    xx += other.xx;
-    xy += other.xy;
-    xz += other.xz;
-    yy += other.yy;
-    yz += other.yz;
-    zz += other.zz;
+    nn += other.nn;
     nd += other.nd;
     n += other.n;
     dd += other.dd;
@@ -59,33 +50,24 @@ struct Volumes {
   // As seen from another origin.
   [[nodiscard]] Volumes from(const glm::dvec3& origin) const {
     Volumes moved = *this;
-    const glm::dvec3 turned = times(origin);
+    const glm::dvec3 turned = nn * origin;
     moved.nd = nd - turned;
     moved.dd = dd - 2.0 * glm::dot(nd, origin) + glm::dot(origin, turned);
     moved.d = d - glm::dot(n, origin);
     return moved;
   }
-  [[nodiscard]] glm::dvec3 times(const glm::dvec3& x) const {
-    return {xx * x.x + xy * x.y + xz * x.z, xy * x.x + yy * x.y + yz * x.z, xz * x.x + yz * x.y + zz * x.z};
-  }
   // Sum of squares at x.
-  [[nodiscard]] double at(const glm::dvec3& x) const { return glm::dot(x, times(x)) - 2.0 * glm::dot(nd, x) + dd; }
+  [[nodiscard]] double at(const glm::dvec3& x) const { return nn.form(x) - 2.0 * glm::dot(nd, x) + dd; }
 
   // The x with the least sum of squares among those where volumes above and below are equal; each is also drawn to the
   // origin by `pull` of its squared distance.
   [[nodiscard]] std::optional<glm::dvec3> least(double weight, double pull) const {
-    const double a = weight * xx + pull, b = weight * xy, c = weight * xz, e = weight * yy + pull, f = weight * yz,
-                 i = weight * zz + pull;
-    const double ca = e * i - f * f, cb = c * f - b * i, cc = b * f - c * e;
-    const double determinant = a * ca + b * cb + c * cc;
-    if (!(determinant > 0.0)) return std::nullopt;
-    const double ce = a * i - c * c, cf = b * c - a * f, ci = a * e - b * b;
-    const auto solved = [&](const glm::dvec3& r) {
-      return glm::dvec3{ca * r.x + cb * r.y + cc * r.z, cb * r.x + ce * r.y + cf * r.z,
-                        cc * r.x + cf * r.y + ci * r.z} /
-             determinant;
-    };
-    const glm::dvec3 free = solved(weight * nd), along = solved(n);
+    collapse::Symmetric3 pulled{weight * nn.xx, weight * nn.xy, weight * nn.xz,
+                                weight * nn.yy, weight * nn.yz, weight * nn.zz};
+    pulled.add_isotropic(pull);
+    const collapse::Solver3 solve{pulled};
+    if (!solve.valid()) return std::nullopt;
+    const glm::dvec3 free = solve(weight * nd), along = solve(n);
     const double gain = glm::dot(n, along);
     if (!(gain > 0.0)) return std::nullopt;
     return free - (glm::dot(n, free) - d) / gain * along;
@@ -243,7 +225,7 @@ class TinCollapse {
     for (const std::uint32_t f : {edge / 3, twins_[edge] / 3}) volumes.add(normals_[f], distances_[f], -1.0);
     volumes = volumes.from(middle);
     // The shape term draws towards the middle of the edge, which is the origin here.
-    const double pull = options_.shape_weight + 1e-11 * (volumes.xx + volumes.yy + volumes.zz);
+    const double pull = options_.shape_weight + 1e-11 * volumes.nn.trace();
     const double reach = glm::length(glm::dvec2{pb - pa});
     const auto best = volumes.least(options_.volume_weight, pull);
     glm::dvec3 at{0.0};
