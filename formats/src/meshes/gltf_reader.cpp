@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glTF 2.0 and GLB through tinygltf, which parses; what it hands over is checked here.
+// The mesh of a glTF 2.0 file or GLB. What tinygltf hands over is checked here.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,124 +10,15 @@
 #include "axes.h"
 #include "gltf_accessors.h"
 #include "gltf_colors.h"
+#include "gltf_draco.h"
 #include "gltf_features.h"
+#include "gltf_parse.h"
 #include "reader.h"
 
 namespace lodestone {
 namespace {
 
 using tinygltf::Model;
-
-// tinygltf and its JSON parser recurse; deeper nesting than any sane file has would overflow the stack.
-bool nested_too_deep(std::span<const std::uint8_t> json) {
-  constexpr int deepest = 200;
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = static_cast<char>(json[i]);
-    if (in_string) {
-      if (c == '\\')
-        ++i;
-      else if (c == '"')
-        in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > deepest) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
-}
-
-struct Folder {
-  std::filesystem::path path;
-  std::uint64_t max_bytes = 0;
-};
-
-// Files that a glTF names are found as forgivingly as those of an OBJ.
-tinygltf::FsCallbacks file_access(Folder& folder) {
-  tinygltf::FsCallbacks access{};
-  access.FileExists = [](const std::string& name, void* user) {
-    return find_beside(static_cast<const Folder*>(user)->path, name).has_value();
-  };
-  access.ExpandFilePath = [](const std::string& name, void*) { return name; };
-  access.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
-    const auto* where = static_cast<const Folder*>(user);
-    const auto file = find_beside(where->path, name);
-    auto input =
-        file ? Input::open(*file, where->max_bytes) : Result<Input>{Error{ErrorCode::NotFound, "is missing", name}};
-    auto bytes = input ? input->read_all() : Result<std::vector<std::uint8_t>>{input.error()};
-    if (bytes)
-      *out = std::move(*bytes);
-    else
-      *error = to_line(bytes.error());
-    return bytes.ok();
-  };
-  access.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-    return false;
-  };
-  access.user_data = &folder;
-  return access;
-}
-
-// Images stay encoded.
-bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                int size, void*) {
-  image->image.assign(bytes, bytes + size);
-  image->as_is = true;
-  return true;
-}
-
-std::string first_line(std::string text) { return text.substr(0, std::min(text.find('\n'), std::size_t{200})); }
-
-Result<Model> parse(const Input& input, const ReadOptions& options) {
-  auto bytes = input.read_all();
-  if (!bytes) return bytes.error();
-  constexpr std::uint64_t most = 0xFFFFFFFFU;
-  if (bytes->size() > most) return too_large(input, "bytes", bytes->size(), most);
-  const bool binary = bytes->size() >= 4 && std::equal(bytes->begin(), bytes->begin() + 4, "glTF");
-  std::span<const std::uint8_t> json{*bytes};
-  if (binary) {
-    if (bytes->size() < 20) return Error{ErrorCode::BadData, "is cut off in its header", input.name()};
-    const std::uint32_t length =
-        (*bytes)[12] | ((*bytes)[13] << 8) | ((*bytes)[14] << 16) | (std::uint32_t{(*bytes)[15]} << 24);
-    json = json.subspan(20).first(std::min<std::size_t>(length, bytes->size() - 20));
-  }
-  if (nested_too_deep(json)) return Error{ErrorCode::BadData, "nests deeper than 200 levels", input.name()};
-  Folder folder{input.folder(), options.max_file_bytes};
-  tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks(file_access(folder));
-  loader.SetImageLoader(keep_image, nullptr);
-  Model model;
-  std::string error;
-  std::string warning;
-  const auto size = static_cast<unsigned int>(bytes->size());
-  bool good = false;
-  try {
-    good = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes->data(), size)
-                  : loader.LoadASCIIFromString(&model, &error, &warning, reinterpret_cast<const char*>(bytes->data()),
-                                               size, "");
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& thrown) {
-    error = thrown.what();
-  }
-  if (!good) {
-    return Error{ErrorCode::BadData, "is not valid glTF 2.0" + (error.empty() ? "" : " (" + first_line(error) + ")"),
-                 input.name()};
-  }
-  for (const std::string& extension : model.extensionsRequired) {
-    static constexpr std::array known{"KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_unlit",
-                                      "EXT_texture_webp", "KHR_materials_pbrSpecularGlossiness"};
-    if (std::find(known.begin(), known.end(), extension) == known.end()) {
-      return Error{ErrorCode::Unsupported, "needs the glTF extension " + extension + ", which is not supported",
-                   input.name()};
-    }
-  }
-  return model;
-}
 
 glm::dmat4 local_matrix(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
@@ -175,6 +66,12 @@ UvUse uv_use(const tinygltf::ExtensionMap& extensions, int set) {
   use.matrix = glm::mat2{glm::vec2{c, -s} * scale.x, glm::vec2{s, c} * scale.y};
   use.offset = {number_at(t, "offset", 0, 0.0), number_at(t, "offset", 1, 0.0)};
   return use;
+}
+
+// An error with the file's name before its place in it.
+Error in_file(Error error, const Input& input) {
+  error.where = input.name() + (error.where.empty() || error.where == input.name() ? "" : ", " + error.where);
+  return error;
 }
 
 class GltfReader {
@@ -441,10 +338,6 @@ Status GltfReader::add_faces(const tinygltf::Primitive& primitive, VertexId firs
 }
 
 Status GltfReader::add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& to_mesh, FeatureId feature) {
-  if (primitive.extensions.count("KHR_draco_mesh_compression") != 0) {
-    return Error{ErrorCode::Unsupported, "is compressed with Draco, which is not supported; unpack it first",
-                 input_.name()};
-  }
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
       primitive.mode != TINYGLTF_MODE_TRIANGLE_FAN && primitive.mode != -1) {
     warnings_.add("lines and points are left out");
@@ -497,11 +390,7 @@ Result<LoadedMesh> GltfReader::read() {
   choose_place();
   add_materials();
   for (const Instance& instance : instances_) {
-    if (auto done = add_instance(instance); !done) {
-      Error error = done.error();
-      error.where = input_.name() + (error.where.empty() || error.where == input_.name() ? "" : ", " + error.where);
-      return error;
-    }
+    if (auto done = add_instance(instance); !done) return in_file(done.error(), input_);
   }
   VertexArrays& v = mesh_.vertices;
   if (!v.normals.empty()) v.normals.resize(v.positions.size(), glm::vec3{0.0F});
@@ -525,8 +414,9 @@ Result<LoadedMesh> GltfReader::read() {
 }  // namespace
 
 Result<LoadedMesh> read_gltf(const Input& input, const ReadOptions& options, const Context& context) {
-  auto model = parse(input, options);
+  auto model = parse_gltf(input, options);
   if (!model) return model.error();
+  if (auto done = unpack_draco(*model, options); !done) return in_file(done.error(), input);
   return GltfReader{input, *model, options, context}.read();
 }
 
