@@ -17,12 +17,16 @@ namespace lodestone {
 using Bytes = std::vector<std::uint8_t>;
 using ByteSpan = std::span<const std::uint8_t>;
 
-[[nodiscard]] Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels);
+// With `at_least` not 0 possibly smaller: down to an eighth, its longer side at least so many pixels.
+[[nodiscard]] Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_t at_least = 0);
 // Upright, from the head of a file.
 [[nodiscard]] Result<glm::uvec2> jpeg_size(ByteSpan bytes);
 [[nodiscard]] Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_webp(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels);
+
+// The picture with its longer side at most `longest` pixels, as JPEG, or PNG where it has alpha.
+[[nodiscard]] Result<Bytes> encode_preview(ByteSpan bytes, const std::string& source, std::uint32_t longest);
 
 // Nothing if the size is fine; else TooLarge or, for an empty image, BadData.
 [[nodiscard]] Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t max_pixels);

@@ -89,9 +89,20 @@ Error jpeg_error(void* handle, std::string_view what) {
   return Error{ErrorCode::BadData, std::string{what} + " (" + tjGetErrorStr2(handle) + ")", {}};
 }
 
+// Shrinks a size as far as the decoder can for nothing and `at_least` allows.
+void shrink(int& width, int& height, std::uint32_t at_least) {
+  for (const int eighths : {1, 2, 4}) {
+    const tjscalingfactor factor{eighths, 8};
+    if (static_cast<std::uint32_t>(TJSCALED(std::max(width, height), factor)) < at_least) continue;
+    width = TJSCALED(width, factor);
+    height = TJSCALED(height, factor);
+    return;
+  }
+}
+
 }  // namespace
 
-Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels) {
+Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_t at_least) {
   const Handle handle{tjInitDecompress()};
   if (!handle) return Error{ErrorCode::Unreadable, "the JPEG decoder could not be started", {}};
   int width = 0;
@@ -103,6 +114,7 @@ Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels) {
     return jpeg_error(handle.get(), "the JPEG header is broken");
   }
   if (auto fits = check_image_size(width, height, max_pixels); !fits) return fits.error();
+  if (at_least > 0) shrink(width, height, at_least);
   const bool cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
   const int format = cmyk ? TJPF_CMYK : (space == TJCS_GRAY ? TJPF_GRAY : TJPF_RGB);
   Image image{static_cast<std::uint32_t>(width),

@@ -89,7 +89,7 @@ class ModelReader {
       if (auto fault = read_bytes(entry.stored_bytes, stored)) return fault;
       if (checksum(stored) != entry.checksum) return bad(name_of(i) + " is damaged; copy the file again");
       if (entry.kind == BlockKind::Texture) {
-        data_.textures[entry.count].encoded = std::make_shared<const Bytes>(std::move(stored));
+        take_texture(entry.count, std::move(stored));
       } else if (auto fault = load_block(i, std::move(stored))) {
         return fault;
       }
@@ -99,6 +99,14 @@ class ModelReader {
       warnings_.add("the file is cut short; the model is coarser than it was written", input_.name());
     }
     return std::nullopt;
+  }
+
+  // A preview is replaced by what comes later.
+  void take_texture(std::uint32_t index, Bytes stored) {
+    Texture& texture = data_.textures[index];
+    texture.mime_type = image_mime_type(stored);
+    if (texture.mime_type.empty()) texture.mime_type = header_.surroundings.textures[index].mime_type;
+    texture.encoded = std::make_shared<const Bytes>(std::move(stored));
   }
 
   Fault load_block(std::size_t i, Bytes stored) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Order of blocks: base, records from coarse to fine, textures from small to large.
+// Order of blocks: base, previews of textures, records from coarse to fine, textures from small to large.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +7,7 @@
 #include <lodestone/formats.h>
 
 #include "header.h"
+#include "images/codecs.h"
 #include "output_file.h"
 #include "reader.h"
 #include "reorder.h"
@@ -28,6 +29,9 @@ struct TextureBytes {
   std::shared_ptr<const std::vector<std::uint8_t>> bytes;
 };
 
+// Of the longer side of a preview. All of them stand before the first record, so many textures get small ones.
+std::uint32_t preview_size_px(std::size_t textures) { return textures <= 16 ? 64 : textures <= 128 ? 32 : 16; }
+
 class ModelWriter {
  public:
   ModelWriter(const ModelData& data, const Context& context) : data_(data), context_(context) {}
@@ -35,15 +39,9 @@ class ModelWriter {
   Result<std::uint64_t> write(const std::filesystem::path& file, const ModelWriteOptions& options, const Box& box) {
     describe(options, box);
     gather_textures(file, options.embed_textures);
+    if (const Status done = gather_previews(); !done) return done.error();
     if (const Status done = encode(); !done) return done.error();
-    for (const TextureBytes& t : embedded_) {
-      header_.blocks.push_back({.kind = BlockKind::Texture,
-                                .compressed = false,
-                                .count = t.texture,
-                                .stored_bytes = t.bytes->size(),
-                                .raw_bytes = t.bytes->size(),
-                                .checksum = checksum(*t.bytes)});
-    }
+    for (const TextureBytes& t : embedded_) add_texture(t);
     return store(file);
   }
 
@@ -88,6 +86,24 @@ class ModelWriter {
                      [](const auto& a, const auto& b) { return a.bytes->size() < b.bytes->size(); });
   }
 
+  // A texture that is hardly larger than its preview comes early itself.
+  Status gather_previews() {
+    const std::uint32_t longest_px = preview_size_px(embedded_.size());
+    std::vector<TextureBytes> late;
+    for (TextureBytes& t : embedded_) {
+      if (context_.cancelled()) return Error{ErrorCode::Cancelled, "writing was cancelled", {}};
+      auto preview = encode_preview(*t.bytes, data_.textures[t.texture].name, longest_px);
+      if (preview && 2 * preview->size() >= t.bytes->size()) {
+        previews_.push_back(std::move(t));
+        continue;
+      }
+      if (preview) previews_.push_back({t.texture, std::make_shared<const Bytes>(std::move(preview).value())});
+      late.push_back(std::move(t));
+    }
+    embedded_ = std::move(late);
+    return Done{};
+  }
+
   static std::shared_ptr<const std::vector<std::uint8_t>> bytes_of(const Texture& texture, std::string& mime_type) {
     if (texture.encoded != nullptr) return texture.encoded;
     if (texture.image != nullptr && !texture.image->empty()) {
@@ -108,6 +124,7 @@ class ModelWriter {
     auto columns = std::make_unique<WrittenColumns>();
     stack.base(*columns);
     add_block(BlockKind::Base, 0, *columns);
+    for (const TextureBytes& t : previews_) add_texture(t);
     const auto records = static_cast<std::uint32_t>(data_.shapes.size());
     for (std::uint32_t done = 0; done < records;) {
       if (context_.cancelled()) return Error{ErrorCode::Cancelled, "writing was cancelled", {}};
@@ -132,20 +149,31 @@ class ModelWriter {
     for (ColumnWriter& column : columns) column.clear();
   }
 
+  void add_texture(const TextureBytes& t) {
+    header_.blocks.push_back({.kind = BlockKind::Texture,
+                              .compressed = false,
+                              .count = t.texture,
+                              .stored_bytes = t.bytes->size(),
+                              .raw_bytes = t.bytes->size(),
+                              .checksum = checksum(*t.bytes)});
+  }
+
   Result<std::uint64_t> store(const std::filesystem::path& file) {
     auto out = OutputFile::create(file);
     if (!out) return out.error();
     const Bytes head = write_header(header_);
     std::uint64_t bytes = head.size();
     out->write(head.data(), head.size());
-    for (const PackedBlock& block : packed_) {
-      out->write(block.bytes.data(), block.bytes.size());
-      bytes += block.bytes.size();
-    }
+    const auto put = [&](const Bytes& block) {
+      out->write(block.data(), block.size());
+      bytes += block.size();
+    };
+    put(packed_.front().bytes);
+    for (const TextureBytes& t : previews_) put(*t.bytes);
+    for (std::size_t i = 1; i < packed_.size(); ++i) put(packed_[i].bytes);
     for (const TextureBytes& t : embedded_) {
       if (context_.cancelled()) return Error{ErrorCode::Cancelled, "writing was cancelled", file.string()};
-      out->write(t.bytes->data(), t.bytes->size());
-      bytes += t.bytes->size();
+      put(*t.bytes);
     }
     if (const Status done = out->commit(); !done) return done.error();
     return {bytes, warnings_.take()};
@@ -157,6 +185,7 @@ class ModelWriter {
   const Context& context_;
   Header header_;
   std::vector<PackedBlock> packed_;
+  std::vector<TextureBytes> previews_;
   std::vector<TextureBytes> embedded_;
   Warnings warnings_;
 };
