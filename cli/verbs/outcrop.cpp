@@ -26,6 +26,7 @@ class Outcrop final : public Verb {
   std::string as_ = "3dtiles";
   std::string split_ = "auto";
   std::string image_ = "jpeg";
+  std::string compression_ = "none";
   std::string version_ = "1.1";
   double ratio_ = 0.0;
   double texture_ratio_ = 0.0;
@@ -46,6 +47,8 @@ void Outcrop::declare(Arguments& arguments) {
   arguments.choice("--image", image_, {"jpeg", "png", "webp"}, "Format of the tiles' textures");
   arguments.count("--quality", quality_, 1, 100,
                   "Of JPEG and WebP; JPEG from 90 on keeps the full resolution of colours");
+  arguments.choice("--compress", compression_, {"none", "meshopt"},
+                   "Vertices and triangles: meshopt needs clients that know EXT_meshopt_compression");
   arguments.choice("--tiles-version", version_, {"1.1", "1.0"}, "3D Tiles: glb, or b3dm for older clients");
   arguments.flag("--resume", resume_, "Go on with a build that was stopped");
 }
@@ -59,6 +62,7 @@ TilesetOptions Outcrop::options() const {
   if (split_ == "space") options.pyramid.split = TileSplit::Space;
   if (image_ == "png") options.image = TileImage::Png;
   if (image_ == "webp") options.image = TileImage::Webp;
+  if (compression_ == "meshopt") options.compression = TileCompression::Meshopt;
   if (version_ == "1.0") options.version = TilesVersion::V1_0;
   options.jpeg_quality = static_cast<int>(quality_);
   options.resume = resume_;

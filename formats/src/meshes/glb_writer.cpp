@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Binary glTF 2.0: one primitive per material over shared vertex arrays, everything in one file. Several levels of one
 // model become one mesh each, that share materials and textures (MSFT_lod). Features of faces become ids of vertices
-// and a table (EXT_mesh_features, EXT_structural_metadata), except in tiles of photographs.
+// and a table (EXT_mesh_features, EXT_structural_metadata).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,6 +12,7 @@
 
 #include "axes.h"
 #include "gltf_colors.h"
+#include "gltf_meshopt.h"
 #include "gltf_metadata.h"
 #include "writers.h"
 
@@ -24,6 +25,7 @@ static_assert(std::endian::native == std::endian::little, "glTF is little-endian
 enum GltfConstant : int {
   ArrayBuffer = 34962,
   ElementArrayBuffer = 34963,
+  Byte = 5120,
   UnsignedShort = 5123,
   UnsignedInt = 5125,
   Float = 5126,
@@ -38,6 +40,55 @@ std::vector<std::uint8_t> bytes_of(std::span<const std::byte> raw) {
 }
 
 constexpr const char* webp = "image/webp";
+constexpr const char* meshopt = "EXT_meshopt_compression";
+
+std::vector<glm::vec3> turned_positions(const VertexArrays& vertices) {
+  std::vector<glm::vec3> turned;
+  turned.reserve(vertices.positions.size());
+  for (const glm::vec3& p : vertices.positions) turned.push_back(z_up_to_y_up(p));
+  return turned;
+}
+
+glm::vec3 normal_for_gltf(const glm::vec3& normal) {
+  const glm::vec3 n = z_up_to_y_up(normal);
+  const float length = glm::length(n);
+  constexpr float tolerance = 4e-4F;  // gltf-validator allows 5e-4
+  if (std::abs(length - 1.0F) < tolerance) return n;
+  return length > 0.0F ? n / length : glm::vec3{0.0F, 1.0F, 0.0F};
+}
+
+std::vector<glm::vec3> normals_for_gltf(const VertexArrays& vertices) {
+  std::vector<glm::vec3> normals;
+  normals.reserve(vertices.normals.size());
+  for (const glm::vec3& n : vertices.normals) normals.push_back(normal_for_gltf(n));
+  return normals;
+}
+
+// 16 bits each, four a vertex.
+std::vector<std::uint16_t> linear_colors(const VertexArrays& vertices) {
+  std::array<std::uint16_t, 256> linear{};
+  for (int c = 0; c < 256; ++c)
+    linear[c] = static_cast<std::uint16_t>(std::lround(srgb_to_linear(c / 255.0) * 65535.0));
+  std::vector<std::uint16_t> colors;
+  colors.reserve(4 * vertices.colors.size());
+  for (const glm::u8vec4& color : vertices.colors) {
+    for (int c = 0; c < 3; ++c) colors.push_back(linear[color[c]]);
+    colors.push_back(static_cast<std::uint16_t>(color.a * 257));
+  }
+  return colors;
+}
+
+// The least and greatest place of an accessor.
+void set_range(Json& accessor, std::span<const glm::vec3> positions) {
+  glm::vec3 low{std::numeric_limits<float>::infinity()};
+  glm::vec3 high{-std::numeric_limits<float>::infinity()};
+  for (const glm::vec3& p : positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  accessor["min"] = {low.x, low.y, low.z};
+  accessor["max"] = {high.x, high.y, high.z};
+}
 
 // glTF takes JPEG and PNG, and WebP by an extension that tiles use; anything else is turned into PNG.
 Result<EncodedTexture> image_for_gltf(const Texture& texture, GltfLook look) {
@@ -54,8 +105,9 @@ Result<EncodedTexture> image_for_gltf(const Texture& texture, GltfLook look) {
 class GlbWriter {
  public:
   // The finest level first; all have the surroundings of the first.
-  GlbWriter(std::span<const GltfLevel> levels, GltfLook look) : first_{*levels.front().mesh}, look_{look} {
-    for (const GltfLevel& level : levels) parts_.push_back({level.mesh, nullptr, {}, false, level.least_coverage});
+  GlbWriter(std::span<const GltfLevel> levels, const GltfStyle& style)
+      : first_{*levels.front().mesh}, look_{style.look}, packing_{style.packing} {
+    for (const GltfLevel& level : levels) parts_.push_back({level.mesh, {}, {}, {}, false, level.least_coverage});
   }
   [[nodiscard]] Status plan(std::vector<Warning>& warnings);
   [[nodiscard]] std::uint64_t total_bytes() const { return 12 + 8 + json_.size() + 8 + binary_bytes_; }
@@ -64,7 +116,8 @@ class GlbWriter {
  private:
   struct Part {
     const Mesh* mesh;
-    std::unique_ptr<FeatureVertices> split;  // where there are features; `mesh` is the one in it then
+    std::unique_ptr<Mesh> own;               // split where features meet, or in another order; `mesh` is this one then
+    std::vector<std::uint32_t> vertex_rows;  // where there are features
     std::vector<std::vector<FaceId>> faces;  // by material
     bool short_indices;
     double least_coverage;
@@ -74,8 +127,12 @@ class GlbWriter {
     std::vector<std::uint8_t> bytes;
   };
   int add_view(std::uint64_t size, int target);
+  int add_packed_view(const packing::View& view, int target, std::vector<std::uint8_t> bytes);
+  int add_packed_floats(std::span<const float> values, std::size_t components, const char* shape, int exponent);
+  [[nodiscard]] Json plan_packed_attributes(const Part& part);
+  int add_indices(const Part& part, const std::vector<FaceId>& faces);
   int add_accessor(int view, int type, std::uint64_t count, const char* shape);
-  static void plan_faces(Part& part);
+  void plan_faces(Part& part) const;
   void plan_features(std::vector<Warning>& warnings);
   void plan_table();
   void add_column(const char* name, const Json& type, std::vector<std::uint8_t> bytes, const StringColumn* strings);
@@ -84,6 +141,7 @@ class GlbWriter {
   [[nodiscard]] Json feature_ids(const Part& part, const std::vector<FaceId>& faces) const;
   [[nodiscard]] Json plan_primitives(const Part& part);
   void plan_levels(Json& node);
+  void name_packing();
   void plan_textures(std::vector<Warning>& warnings);
   [[nodiscard]] Json material_json(const Material& material) const;
   static void write_vertices(const Part& part, BlockWriter& out);
@@ -91,6 +149,9 @@ class GlbWriter {
 
   const Mesh& first_;
   GltfLook look_;
+  std::optional<GltfPacking> packing_;
+  std::vector<std::vector<std::uint8_t>> packed_;  // vertices and indices, in place of the meshes' own
+  std::uint64_t unpacked_bytes_ = 0;               // of the buffer that is not there
   std::vector<Part> parts_;
   Json root_;
   std::string json_;
@@ -109,12 +170,101 @@ int GlbWriter::add_view(std::uint64_t size, int target) {
   return static_cast<int>(root_["bufferViews"].size()) - 1;
 }
 
+// The view itself lies in a buffer that is not there; where its bytes are the extension says.
+int GlbWriter::add_packed_view(const packing::View& view, int target, std::vector<std::uint8_t> bytes) {
+  Json json{{"buffer", 1}, {"byteOffset", unpacked_bytes_}, {"byteLength", view.count * view.stride}};
+  if (target == ArrayBuffer) json["byteStride"] = view.stride;
+  json["target"] = target;
+  Json& packed = json["extensions"][meshopt];
+  packed = {{"buffer", 0},
+            {"byteOffset", binary_bytes_},
+            {"byteLength", bytes.size()},
+            {"byteStride", view.stride},
+            {"count", view.count},
+            {"mode", view.mode}};
+  if (!view.filter.empty()) packed["filter"] = view.filter;
+  root_["bufferViews"].push_back(std::move(json));
+  unpacked_bytes_ += padded(view.count * view.stride);
+  binary_bytes_ += padded(bytes.size());
+  packed_.push_back(std::move(bytes));
+  return static_cast<int>(root_["bufferViews"].size()) - 1;
+}
+
+int GlbWriter::add_packed_floats(std::span<const float> values, std::size_t components, const char* shape,
+                                 int exponent) {
+  const packing::View view{values.size() / components, 4 * components, "ATTRIBUTES", "EXPONENTIAL"};
+  return add_accessor(add_packed_view(view, ArrayBuffer, packing::pack_floats(values, components, exponent)), Float,
+                      view.count, shape);
+}
+
+Json GlbWriter::plan_packed_attributes(const Part& part) {
+  const VertexArrays& v = part.mesh->vertices;
+  const std::uint64_t count = v.size();
+  const auto floats = [](const auto& vectors) {
+    return std::span{reinterpret_cast<const float*>(vectors.data()), vectors.size() * (sizeof vectors[0] / 4)};
+  };
+  const auto add_normalized = [&](const packing::View& view, std::vector<std::uint8_t> bytes, int type,
+                                  const char* shape) {
+    const int accessor = add_accessor(add_packed_view(view, ArrayBuffer, std::move(bytes)), type, count, shape);
+    root_["accessors"][accessor]["normalized"] = true;
+    return accessor;
+  };
+  Json attributes;
+  std::vector<glm::vec3> turned = turned_positions(v);
+  attributes["POSITION"] = add_packed_floats(floats(turned), 3, "VEC3", packing_->position_exponent);
+  for (glm::vec3& p : turned) {
+    for (int c = 0; c < 3; ++c) p[c] = packing::on_grid(p[c], packing_->position_exponent);
+  }
+  set_range(root_["accessors"][attributes["POSITION"].get<int>()], turned);
+  if (!v.normals.empty()) {
+    attributes["NORMAL"] = add_normalized({count, 4, "ATTRIBUTES", "OCTAHEDRAL"},
+                                          packing::pack_normals(normals_for_gltf(v)), Byte, "VEC3");
+  }
+  if (!v.uvs.empty()) {
+    std::vector<glm::vec2> flipped;
+    for (const glm::vec2& uv : v.uvs) flipped.push_back(flip_v(uv));
+    attributes["TEXCOORD_0"] = add_packed_floats(floats(flipped), 2, "VEC2", packing_->uv_exponent);
+  }
+  if (!v.colors.empty()) {
+    const std::vector<std::uint16_t> colors = linear_colors(v);
+    const std::vector<std::uint8_t> raw = bytes_of(std::as_bytes(std::span{colors}));
+    attributes["COLOR_0"] =
+        add_normalized({count, 8, "ATTRIBUTES", {}}, packing::pack_raw(raw, 8), UnsignedShort, "VEC4");
+  }
+  if (!part.vertex_rows.empty()) {
+    const std::vector<float> ids(part.vertex_rows.begin(), part.vertex_rows.end());
+    const std::vector<std::uint8_t> raw = bytes_of(std::as_bytes(std::span{ids}));
+    attributes["_FEATURE_ID_0"] = add_accessor(
+        add_packed_view({count, 4, "ATTRIBUTES", {}}, ArrayBuffer, packing::pack_raw(raw, 4)), Float, count, "SCALAR");
+  }
+  return attributes;
+}
+
+int GlbWriter::add_indices(const Part& part, const std::vector<FaceId>& faces) {
+  const std::uint64_t count = 3 * faces.size();
+  const int type = part.short_indices ? UnsignedShort : UnsignedInt;
+  const std::uint64_t size = part.short_indices ? 2 : 4;
+  if (!packing_) return add_accessor(add_view(count * size, ElementArrayBuffer), type, count, "SCALAR");
+  std::vector<std::uint32_t> corners;
+  for (const FaceId f : faces) {
+    const VertexId* v = &part.mesh->indices[3 * std::size_t{f}];
+    corners.insert(corners.end(), v, v + 3);
+  }
+  const int view =
+      add_packed_view({count, size, "TRIANGLES", {}}, ElementArrayBuffer, packing::pack_triangles(corners));
+  return add_accessor(view, type, count, "SCALAR");
+}
+
 int GlbWriter::add_accessor(int view, int type, std::uint64_t count, const char* shape) {
   root_["accessors"].push_back({{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
   return static_cast<int>(root_["accessors"].size()) - 1;
 }
 
-void GlbWriter::plan_faces(Part& part) {
+void GlbWriter::plan_faces(Part& part) const {
+  if (packing_) {
+    part.own = std::make_unique<Mesh>(packing::in_packing_order(*part.mesh, part.vertex_rows));
+    part.mesh = part.own.get();
+  }
   const Mesh& mesh = *part.mesh;
   part.faces.resize(mesh.materials.size());
   for (FaceId f = 0; f < mesh.triangle_count(); ++f) part.faces[mesh.face_material(f)].push_back(f);
@@ -124,7 +274,7 @@ void GlbWriter::plan_faces(Part& part) {
 
 // Ids are floats, which count exactly to 2^24: glTF has no 32-bit integers for vertices.
 void GlbWriter::plan_features(std::vector<Warning>& warnings) {
-  if (look_ == GltfLook::Photograph || first_.face_features.empty()) return;
+  if (first_.face_features.empty()) return;
   rows_ = rows_of(first_);
   if (rows_.features.size() >= 1U << 24) {
     warnings.push_back({"more features than glTF can tell apart: they were left out", {}});
@@ -132,8 +282,10 @@ void GlbWriter::plan_features(std::vector<Warning>& warnings) {
   }
   if (rows_.empty()) return;
   for (Part& part : parts_) {
-    part.split = std::make_unique<FeatureVertices>(split_by_feature(*part.mesh, rows_));
-    part.mesh = &part.split->mesh;
+    FeatureVertices split = split_by_feature(*part.mesh, rows_);
+    part.own = std::make_unique<Mesh>(std::move(split.mesh));
+    part.mesh = part.own.get();
+    part.vertex_rows = std::move(split.vertex_rows);
   }
   root_["extensionsUsed"].push_back("EXT_mesh_features");
   root_["extensionsUsed"].push_back("EXT_structural_metadata");
@@ -172,7 +324,7 @@ void GlbWriter::plan_table() {
 
 Json GlbWriter::feature_ids(const Part& part, const std::vector<FaceId>& faces) const {
   std::set<std::uint32_t> seen;
-  for (const FaceId f : faces) seen.insert(part.split->vertex_rows[part.mesh->indices[3 * std::size_t{f}]]);
+  for (const FaceId f : faces) seen.insert(part.vertex_rows[part.mesh->indices[3 * std::size_t{f}]]);
   seen.erase(rows_.no_row());
   if (seen.empty()) return {};
   Json set{{"featureCount", seen.size()}, {"nullFeatureId", rows_.no_row()}, {"attribute", 0}, {"propertyTable", 0}};
@@ -180,18 +332,12 @@ Json GlbWriter::feature_ids(const Part& part, const std::vector<FaceId>& faces) 
 }
 
 Json GlbWriter::plan_attributes(const Part& part) {
+  if (packing_) return plan_packed_attributes(part);
   const VertexArrays& v = part.mesh->vertices;
   const std::uint64_t count = v.size();
   Json attributes;
-  glm::vec3 low{std::numeric_limits<float>::infinity()};
-  glm::vec3 high{-std::numeric_limits<float>::infinity()};
-  for (const auto& p : v.positions) {
-    low = glm::min(low, z_up_to_y_up(p));
-    high = glm::max(high, z_up_to_y_up(p));
-  }
   const int positions = add_accessor(add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
-  root_["accessors"][positions]["min"] = {low.x, low.y, low.z};
-  root_["accessors"][positions]["max"] = {high.x, high.y, high.z};
+  set_range(root_["accessors"][positions], turned_positions(v));
   attributes["POSITION"] = positions;
   if (!v.normals.empty()) attributes["NORMAL"] = add_accessor(add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
   if (!v.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(add_view(8 * count, ArrayBuffer), Float, count, "VEC2");
@@ -200,7 +346,9 @@ Json GlbWriter::plan_attributes(const Part& part) {
     root_["accessors"][colors]["normalized"] = true;
     attributes["COLOR_0"] = colors;
   }
-  if (part.split) attributes["_FEATURE_ID_0"] = add_accessor(add_view(4 * count, ArrayBuffer), Float, count, "SCALAR");
+  if (!part.vertex_rows.empty()) {
+    attributes["_FEATURE_ID_0"] = add_accessor(add_view(4 * count, ArrayBuffer), Float, count, "SCALAR");
+  }
   return attributes;
 }
 
@@ -209,11 +357,9 @@ Json GlbWriter::plan_primitives(const Part& part) {
   Json primitives = Json::array();
   for (std::size_t m = 0; m < part.faces.size(); ++m) {
     if (part.faces[m].empty()) continue;
-    const std::uint64_t count = 3 * part.faces[m].size();
-    const int view = add_view(count * (part.short_indices ? 2 : 4), ElementArrayBuffer);
-    const int indices = add_accessor(view, part.short_indices ? UnsignedShort : UnsignedInt, count, "SCALAR");
+    const int indices = add_indices(part, part.faces[m]);
     primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", m}});
-    if (!part.split) continue;
+    if (part.vertex_rows.empty()) continue;
     if (Json ids = feature_ids(part, part.faces[m]); !ids.empty()) {
       primitives.back()["extensions"]["EXT_mesh_features"] = std::move(ids);
     }
@@ -289,6 +435,16 @@ Json GlbWriter::material_json(const Material& material) const {
   return json;
 }
 
+void GlbWriter::name_packing() {
+  Json absent{{"byteLength", unpacked_bytes_}};
+  absent["extensions"][meshopt] = {{"fallback", true}};
+  root_["buffers"].push_back(std::move(absent));
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    root_[list].push_back(meshopt);
+    if (!first_.vertices.normals.empty()) root_[list].push_back("KHR_mesh_quantization");
+  }
+}
+
 Status GlbWriter::plan(std::vector<Warning>& warnings) {
   root_["asset"] = {{"version", "2.0"}, {"generator", "Lodestone"}};
   root_["scene"] = 0;
@@ -315,6 +471,7 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
     plan_table();
   }
   if (binary_bytes_ > 0) root_["buffers"].push_back({{"byteLength", binary_bytes_}});
+  if (!packed_.empty()) name_packing();
   json_ = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
   json_.resize(padded(json_.size()), ' ');
   if (total_bytes() > std::numeric_limits<std::uint32_t>::max()) {
@@ -326,24 +483,11 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
 void GlbWriter::write_vertices(const Part& part, BlockWriter& out) {
   const VertexArrays& v = part.mesh->vertices;
   for (std::size_t i = 0; i < v.positions.size() && out.pass(); ++i) out.raw(z_up_to_y_up(v.positions[i]));
-  for (std::size_t i = 0; i < v.normals.size() && out.pass(); ++i) {
-    glm::vec3 n = z_up_to_y_up(v.normals[i]);
-    const float length = glm::length(n);
-    constexpr float tolerance = 4e-4F;  // gltf-validator allows 5e-4
-    if (!(std::abs(length - 1.0F) < tolerance)) n = length > 0.0F ? n / length : glm::vec3{0.0F, 1.0F, 0.0F};
-    out.raw(n);
-  }
+  for (std::size_t i = 0; i < v.normals.size() && out.pass(); ++i) out.raw(normal_for_gltf(v.normals[i]));
   for (std::size_t i = 0; i < v.uvs.size() && out.pass(); ++i) out.raw(flip_v(v.uvs[i]));
-  std::array<std::uint16_t, 256> linear{};
-  for (int c = 0; c < 256; ++c)
-    linear[c] = static_cast<std::uint16_t>(std::lround(srgb_to_linear(c / 255.0) * 65535.0));
-  for (std::size_t i = 0; i < v.colors.size() && out.pass(); ++i) {
-    for (int c = 0; c < 3; ++c) out.raw(linear[v.colors[i][c]]);
-    out.raw(static_cast<std::uint16_t>(v.colors[i].a * 257));
-  }
-  if (!part.split) return;
-  for (std::size_t i = 0; i < v.positions.size() && out.pass(); ++i) {
-    out.raw(static_cast<float>(part.split->vertex_rows[i]));
+  for (const std::uint16_t color : linear_colors(v)) out.raw(color);
+  for (std::size_t i = 0; i < part.vertex_rows.size() && out.pass(); ++i) {
+    out.raw(static_cast<float>(part.vertex_rows[i]));
   }
 }
 
@@ -376,26 +520,28 @@ void GlbWriter::write(BlockWriter& out) const {
   out.raw(static_cast<std::uint32_t>(binary_bytes_));
   out.text(std::string_view{"BIN\0", 4});
   for (const Part& part : parts_) {
+    if (packing_) break;
     write_vertices(part, out);
     write_indices(part, out);
   }
-  for (const EncodedTexture& image : images_) {
-    out.text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
-    out.text(std::string(padded(image.bytes.size()) - image.bytes.size(), '\0'));
-  }
+  const auto write_padded = [&](const std::vector<std::uint8_t>& bytes) {
+    out.text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    out.text(std::string(padded(bytes.size()) - bytes.size(), '\0'));
+  };
+  for (const auto& view : packed_) write_padded(view);
+  for (const EncodedTexture& image : images_) write_padded(image.bytes);
   for (const Column& column : metadata_) {
     out.text(std::string(column.gap, '\0'));
-    out.text({reinterpret_cast<const char*>(column.bytes.data()), column.bytes.size()});
-    out.text(std::string(padded(column.bytes.size()) - column.bytes.size(), '\0'));
+    write_padded(column.bytes);
   }
 }
 
 }  // namespace
 
 Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file, const Context& context,
-                         GltfLook look) {
+                         const GltfStyle& style) {
   std::vector<Warning> warnings;
-  GlbWriter writer{levels, look};
+  GlbWriter writer{levels, style};
   if (auto planned = writer.plan(warnings); !planned) {
     return Error{planned.error().code, planned.error().message, file.string()};
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "gltf_draco.h"
+#include "gltf_meshopt.h"
 
 namespace lodestone {
 namespace {
@@ -82,6 +83,14 @@ void put_word(std::vector<std::uint8_t>& bytes, std::size_t at, std::size_t valu
   for (std::size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<std::uint8_t>(value >> (8 * k));
 }
 
+constexpr std::size_t before_json = 20;  // bytes of a GLB
+
+// Precondition: a GLB has its header.
+std::span<const std::uint8_t> json_of(std::span<const std::uint8_t> file, bool binary) {
+  if (!binary) return file;
+  return file.subspan(before_json).first(std::min<std::size_t>(word(file, 12), file.size() - before_json));
+}
+
 // The file with another JSON text in place of the `old_size` bytes after the first `begin`.
 std::vector<std::uint8_t> with_json(const std::vector<std::uint8_t>& file, std::size_t begin, std::size_t old_size,
                                     std::string text) {
@@ -116,14 +125,15 @@ Result<tinygltf::Model> parse_gltf(const Input& input, const ReadOptions& option
   auto bytes = input.read_all();
   if (!bytes) return bytes.error();
   const bool binary = bytes->size() >= 4 && std::equal(bytes->begin(), bytes->begin() + 4, "glTF");
-  std::span<const std::uint8_t> json{*bytes};
-  constexpr std::size_t before_json = 20;
-  if (binary) {
-    if (bytes->size() < before_json) return Error{ErrorCode::BadData, "is cut off in its header", input.name()};
-    const std::uint32_t length = word(*bytes, 12);
-    json = json.subspan(before_json).first(std::min<std::size_t>(length, bytes->size() - before_json));
+  if (binary && bytes->size() < before_json) {
+    return Error{ErrorCode::BadData, "is cut off in its header", input.name()};
   }
-  if (nested_too_deep(json)) return Error{ErrorCode::BadData, "nests deeper than 200 levels", input.name()};
+  if (nested_too_deep(json_of(*bytes, binary))) {
+    return Error{ErrorCode::BadData, "nests deeper than 200 levels", input.name()};
+  }
+  bytes = without_meshopt(std::move(*bytes), input.name());
+  if (!bytes) return bytes.error();
+  const std::span<const std::uint8_t> json = json_of(*bytes, binary);
   if (auto text = without_packed_indices({reinterpret_cast<const char*>(json.data()), json.size()})) {
     *bytes = with_json(*bytes, binary ? before_json : 0, json.size(), std::move(*text));
   }

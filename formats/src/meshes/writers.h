@@ -4,6 +4,7 @@
 #pragma once
 
 #include <charconv>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,19 @@ enum class GltfLook : std::uint8_t {
   Lit,
   Photograph,  // light is in the picture already (KHR_materials_unlit), and it does not repeat
 };
+// Under EXT_meshopt_compression, with KHR_mesh_quantization for normals: positions and uvs become whole multiples of
+// powers of two. Meshes that shall meet need the same exponents.
+struct GltfPacking {
+  int position_exponent = 0;
+  int uv_exponent = 0;
+};
+struct GltfStyle {
+  GltfLook look = GltfLook::Lit;
+  std::optional<GltfPacking> packing = std::nullopt;
+};
 // A GLB; the finest level first. Precondition: at least one, all levels of one model.
 [[nodiscard]] Status write_gltf_levels(std::span<const GltfLevel> levels, const std::filesystem::path& file,
-                                       const Context& context, GltfLook look = GltfLook::Lit);
+                                       const Context& context, const GltfStyle& style = {});
 
 // An OutputFile behind a block of memory, watched by a Context.
 class BlockWriter {

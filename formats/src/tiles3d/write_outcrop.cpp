@@ -5,6 +5,7 @@
 // coarser tiles of several images need of it waits in the folder `work` until the end.
 #define XXH_INLINE_ALL  // header only
 #include <xxhash.h>
+#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <map>
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-constexpr int build_version = 2;  // of what tiles look like; raise it when they change
+constexpr int build_version = 3;  // of what tiles look like; raise it when they change
 
 double thread_seconds() {
   timespec now{};
@@ -69,6 +70,7 @@ std::string signature(const Mesh& mesh, std::span<const TextureInfo> textures, c
                               static_cast<double>(options.pyramid.split),
                               static_cast<double>(options.image),
                               static_cast<double>(options.jpeg_quality),
+                              static_cast<double>(options.compression),
                               static_cast<double>(options.version)};
   for (const Material& m : mesh.materials) {
     numbers.insert(numbers.end(), {m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a, m.alpha_cutoff,
@@ -85,6 +87,24 @@ std::string signature(const Mesh& mesh, std::span<const TextureInfo> textures, c
 
 Error cannot_make(const fs::path& folder, const std::error_code& fault) {
   return {ErrorCode::Unreadable, "the folder cannot be made: " + fault.message(), folder.string()};
+}
+
+// One grid for all tiles: steps of a sixteenth of a millimetre at most, and a millionth of a small outcrop.
+int position_exponent(const OutcropPyramid& pyramid) {
+  constexpr int longest_step = -14;
+  constexpr int steps_of_diagonal = 20;  // bits
+  constexpr int most_steps = 23;         // on either side of the origin
+  const Box& box = pyramid.tiles().back().bounds;
+  const glm::dvec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+  const double farthest = std::max({reach.x, reach.y, reach.z});
+  const int wanted = std::min(longest_step, std::ilogb(std::max(box.diagonal_m(), 1e-9)) - steps_of_diagonal);
+  return std::max(wanted, std::ilogb(std::max(farthest, 1e-9)) + 1 - most_steps);
+}
+
+// Steps of 1/64 texel.
+int uv_exponent(const TileTexture& texture) {
+  constexpr int bits_of_texel = 6;
+  return -bits_of_texel - std::ilogb(static_cast<double>(std::max({texture.width, texture.height, 1U}))) - 1;
 }
 
 class OutcropWriter {
@@ -275,7 +295,11 @@ Status OutcropWriter::write_tile(std::uint32_t tile, std::span<const SegmentImag
   const GltfLevel only{&content.mesh, 0.0};
   const bool plain = options_.version == TilesVersion::V1_1;
   const fs::path glb = plain ? file : folder_ / "work" / (file.stem().string() + ".glb");
-  if (Status status = write_gltf_levels({&only, 1}, glb, quiet_, GltfLook::Photograph); !status) return status;
+  GltfStyle style{.look = GltfLook::Photograph};
+  if (options_.compression == TileCompression::Meshopt) {
+    style.packing = GltfPacking{position_exponent(*pyramid_), uv_exponent(content.texture)};
+  }
+  if (Status status = write_gltf_levels({&only, 1}, glb, quiet_, style); !status) return status;
   if (!plain) {
     if (Status status = wrap_as_b3dm(glb, file); !status) return status;
     std::error_code fault;
