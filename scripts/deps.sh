@@ -14,19 +14,11 @@ packages_of() {
   case "$1" in
     build) echo g++ cmake ninja-build pkg-config git ca-certificates \
       libglm-dev libtbb-dev libopenmesh-dev libnlopt-dev libmetis-dev libcereal-dev libzstd-dev libxxhash-dev \
-<<<<<<< HEAD
-      nlohmann-json3-dev libcli11-dev libassimp-dev libtinygltf-dev libdraco-dev libpugixml-dev \
+      nlohmann-json3-dev libcli11-dev libmeshoptimizer-dev libassimp-dev libtinygltf-dev libdraco-dev libpugixml-dev \
       libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev libproj-dev libopenscenegraph-dev libgdal-dev zlib1g-dev ;;
     viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;
     test) echo ccache catch2 librapidcheck-dev python3 npm xvfb xdotool imagemagick assimp-testmodels ;;
-    bench) echo libmeshoptimizer-dev libcgal-dev libeigen3-dev libtinyobjloader-dev npm python3-vtk9 ;;
-=======
-      nlohmann-json3-dev libcli11-dev libmeshoptimizer-dev libassimp-dev libtinygltf-dev libpugixml-dev \
-      libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev libproj-dev libopenscenegraph-dev libgdal-dev zlib1g-dev ;;
-    viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;
-    test) echo ccache catch2 librapidcheck-dev python3 npm xvfb xdotool imagemagick assimp-testmodels ;;
-    bench) echo libcgal-dev libeigen3-dev libdraco-dev libtinyobjloader-dev npm python3-vtk9 ;;
->>>>>>> a1830d0 (Tiles packed with EXT_meshopt_compression on one grid, read back too; feature ids in tiles of photographs; memory of ten gigabytes of textures as a script)
+    bench) echo libcgal-dev libeigen3-dev libtinyobjloader-dev npm python3-vtk9 ;;
     clients) echo npm chromium ;;
     *) echo "lodestone: deps.sh: no such group: $1 (build viewer test bench clients)" >&2; return 1 ;;
   esac

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include <lodestone/outcrop.h>
 #include <lodestone/tileset_writer.h>
@@ -20,14 +21,19 @@ class Checker {
   Checker(const Tileset& tileset, const Context& context) : tileset_(tileset), context_(context) {}
 
   Result<TilesetCheck> run() {
-    levels_.resize(tileset_.level_count);
-    for (std::uint32_t i = 0; i < tileset_.tiles.size(); ++i) {
+    std::vector<std::uint32_t> order(tileset_.tiles.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return tileset_.tiles[a].level < tileset_.tiles[b].level;
+    });
+    for (std::size_t i = 0; i < order.size(); ++i) {
       if (context_.cancelled()) return Error{ErrorCode::Cancelled, "checking was cancelled", ""};
-      check_place(i);
-      if (Status status = check_content(i); !status) return status.error();
-      context_.report("check", static_cast<double>(i + 1) / static_cast<double>(tileset_.tiles.size()));
+      const std::uint32_t level = tileset_.tiles[order[i]].level;
+      check_place(order[i]);
+      if (Status status = check_content(order[i]); !status) return status.error();
+      if (i + 1 == order.size() || tileset_.tiles[order[i + 1]].level != level) count_open(level);
+      context_.report("check", static_cast<double>(i + 1) / static_cast<double>(order.size()));
     }
-    for (std::size_t level = 0; level < levels_.size(); ++level) count_open(levels_[level], level);
     return std::move(result_);
   }
 
@@ -79,7 +85,7 @@ class Checker {
       if (ka == kb) continue;
       const auto& low = std::min(ka, kb);
       const auto& high = std::max(ka, kb);
-      levels_[tile.level].push_back({low[0], low[1], low[2], high[0], high[1], high[2]});
+      edges_.push_back({low[0], low[1], low[2], high[0], high[1], high[2]});
     }
     return Done{};
   }
@@ -87,23 +93,24 @@ class Checker {
     const auto one = [](float x) { return std::bit_cast<std::uint32_t>(x == 0.0F ? 0.0F : x); };
     return {one(p.x), one(p.y), one(p.z)};
   }
-  void count_open(std::vector<Key>& edges, std::size_t level) {
-    std::sort(edges.begin(), edges.end());
+  void count_open(std::uint32_t level) {
+    std::sort(edges_.begin(), edges_.end());
     std::uint64_t open = 0;
-    for (std::size_t i = 0; i < edges.size();) {
+    for (std::size_t i = 0; i < edges_.size();) {
       std::size_t end = i + 1;
-      while (end < edges.size() && edges[end] == edges[i]) ++end;
+      while (end < edges_.size() && edges_[end] == edges_[i]) ++end;
       if (end == i + 1) ++open;
       i = end;
     }
     const std::uint64_t border = level < tileset_.open_edges.size() ? tileset_.open_edges[level] : 0;
     result_.seams_open += open > border ? open - border : 0;
+    edges_.clear();
   }
 
   const Tileset& tileset_;
   const Context& context_;
   TilesetCheck result_;
-  std::vector<std::vector<Key>> levels_;  // edges of all tiles
+  std::vector<Key> edges_;  // of all tiles of the level at hand
 };
 
 }  // namespace
