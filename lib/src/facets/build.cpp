@@ -32,6 +32,9 @@ namespace {
 
 constexpr double first_price = 1e-10;  // m^4 a face
 constexpr double price_step = 4.0;
+constexpr double look_ahead = 16.0;  // times the price: shifts that cost more when they were looked at wait
+constexpr double least_share = 0.1;  // of what the whole plane would cost, a shift costs at least
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double last_share = 1e-2;  // of (area * diagonal^2): beyond it the block itself would go
 constexpr std::uint32_t rounds_per_price = 4;
 constexpr std::size_t most_neighbours = 256;  // faces of a point that is looked at
@@ -47,6 +50,7 @@ class Builder {
         log_(progressive::value_words(source.vertices)),
         mesh_(make_facet_mesh(source, options, degenerate_)),
         moved_(mesh_),
+        slides_(mesh_),
         planner_(mesh_),
         parts_(mesh_),
         block_(mesh_),
@@ -74,7 +78,8 @@ class Builder {
   void slide_points(double price);
   bool shift_planes(double price);
   [[nodiscard]] std::uint64_t version_of(std::uint32_t surface) const;
-  [[nodiscard]] double key_of_shift(std::uint32_t surface, Direction direction);
+  [[nodiscard]] double key_of_shift(Direction direction, double price);
+  [[nodiscard]] bool is_stale(std::uint32_t surface, std::uint64_t version, double price) const;
   void vanish_parts(double price);
   bool close_openings(double price);
   void offer_around(std::uint32_t point);
@@ -92,6 +97,7 @@ class Builder {
   std::vector<FaceId> degenerate_;
   FacetMesh mesh_;
   Moved moved_;
+  SlideJudge slides_;
   Planner planner_;
   PartFinder parts_;
   Block block_;
@@ -129,20 +135,17 @@ void Builder::offer(std::uint32_t point) {
   if (faces.empty() || faces.size() > most_neighbours) return;
   Entry best{std::numeric_limits<double>::infinity(), point, none, mesh_.version[point]};
   double best_length = 0.0;
-  std::vector<std::uint32_t> tried;
-  for (const FaceId f : faces) {
-    for (const std::uint32_t q : mesh_.faces[f].point) {
-      if (q == point || std::find(tried.begin(), tried.end(), q) != tried.end()) continue;
-      tried.push_back(q);
-      if (!refused_.empty() && refused_.contains({point, q})) continue;
-      const Verdict v = judge_slide(mesh_, moved_, {point, q, mesh_.place[q]}, most_gone * best.key);
-      if (!v.allowed || v.error_m > options_.max_error_m || v.key() > best.key) continue;
-      const double length = glm::length(mesh_.at(q) - mesh_.at(point));
-      if (v.key() == best.key && length >= best_length) continue;
-      best.key = v.key();
-      best.onto = q;
-      best_length = length;
-    }
+  slides_.look_at(point);
+  for (const SlideJudge::Spoke& spoke : slides_.spokes()) {
+    const std::uint32_t q = spoke.to;
+    if (!refused_.empty() && refused_.contains({point, q})) continue;
+    const Verdict v = slides_.judge(q, most_gone * best.key);
+    if (!v.allowed || v.error_m > options_.max_error_m || v.key() > best.key) continue;
+    const double length = glm::length(mesh_.at(q) - mesh_.at(point));
+    if (v.key() == best.key && length >= best_length) continue;
+    best.key = v.key();
+    best.onto = q;
+    best_length = length;
   }
   if (best.onto != none) queue_.push(best);
 }
@@ -188,7 +191,8 @@ void Builder::slide_points(double price) {
     queue_.pop();
     if (e.version != mesh_.version[e.point]) continue;
     const Move move{e.point, e.onto, mesh_.place[e.onto]};
-    const Verdict v = judge_slide(mesh_, moved_, move, std::numeric_limits<double>::infinity());
+    slides_.look_at(e.point);
+    const Verdict v = slides_.judge(e.onto, std::numeric_limits<double>::infinity());
     if (!v.allowed || v.key() > price) {
       offer(e.point);
       continue;
@@ -214,11 +218,24 @@ std::uint64_t Builder::version_of(std::uint32_t surface) const {
   return sum;
 }
 
-double Builder::key_of_shift(std::uint32_t surface, Direction direction) {
-  const Plan plan = planner_.plan(surface, direction);
-  if (plan.moves.empty()) return std::numeric_limits<double>::infinity();
+double Builder::key_of_shift(Direction direction, double price) {
+  const double way_m = planner_.way_m(direction);
+  if (way_m == 0.0) return infinity;
+  const double least = least_share * planner_.area_m2() * way_m * way_m / static_cast<double>(planner_.face_count());
+  if (least > price) return least;
+  const Plan plan = planner_.plan(way_m);
+  if (plan.moves.empty()) return infinity;
   const Verdict v = judge_shift(mesh_, moved_, plan.moves);
-  return v.allowed && v.error_m <= options_.max_error_m ? v.key() : std::numeric_limits<double>::infinity();
+  return v.allowed && v.error_m <= options_.max_error_m ? v.key() : infinity;
+}
+
+// Whether what the shifts of the surface cost has to be found anew.
+bool Builder::is_stale(std::uint32_t surface, std::uint64_t version, double price) const {
+  return std::any_of(known_.begin(), known_.end(), [&](const std::vector<Known>& known) {
+    const Known& k = known[surface];
+    if (k.version == version) return k.key <= price;
+    return std::isinf(k.key) || k.key <= look_ahead * price;
+  });
 }
 
 bool Builder::shift_planes(double price) {
@@ -233,10 +250,11 @@ bool Builder::shift_planes(double price) {
     std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
     if (mesh_.surface_faces[s].empty()) continue;
     const std::uint64_t version = version_of(s);
+    if (!is_stale(s, version, price)) continue;
+    const bool moves = planner_.look_at(s);
     for (const Direction direction : {Direction::Inwards, Direction::Outwards}) {
       Known& known = known_[static_cast<std::size_t>(direction)][s];
-      if (known.version == version && known.key > price) continue;
-      known = {version, key_of_shift(s, direction)};
+      known = {version, moves ? key_of_shift(direction, price) : infinity};
       if (known.key <= price) offers.push_back({known.key, s, direction});
     }
   }
@@ -255,7 +273,8 @@ bool Builder::shift_planes(double price) {
     if (done()) break;
     joiner.begin(way(offer));
     planner_.begin_round();  // others may have moved meanwhile: plan anew
-    const Plan plan = planner_.plan(offer.surface, offer.direction);
+    if (!planner_.look_at(offer.surface)) continue;
+    const Plan plan = planner_.plan(planner_.way_m(offer.direction));
     if (plan.moves.empty()) continue;
     const Verdict v = judge_shift(mesh_, moved_, plan.moves);
     if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m || cuts_through()) continue;

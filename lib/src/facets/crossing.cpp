@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace lodestone::facets {
 namespace {
 
-constexpr std::size_t small_part = 256;  // faces
-constexpr double touch_m = 1e-3;         // that deep is no crossing yet
+constexpr std::size_t small_part = 1024;  // faces
+constexpr double touch_m = 1e-3;          // that deep is no crossing yet
 
 using Corners = std::array<glm::dvec3, 3>;
 
@@ -24,18 +25,33 @@ bool pierces(const glm::dvec3& p, const glm::dvec3& q, const Corners& t, const g
   return true;
 }
 
-bool cross(const Corners& a, const Corners& b) {
-  const auto low = [](const Corners& t) { return glm::min(t[0], glm::min(t[1], t[2])); };
-  const auto high = [](const Corners& t) { return glm::max(t[0], glm::max(t[1], t[2])); };
-  if (glm::any(glm::greaterThan(low(a), high(b))) || glm::any(glm::greaterThan(low(b), high(a)))) return false;
-  const glm::dvec3 na = glm::cross(a[1] - a[0], a[2] - a[0]);
-  const glm::dvec3 nb = glm::cross(b[1] - b[0], b[2] - b[0]);
+// A triangle with what is asked of it again and again.
+struct Piece {
+  explicit Piece(const Corners& at)
+      : corner(at), low(glm::min(at[0], glm::min(at[1], at[2]))), high(glm::max(at[0], glm::max(at[1], at[2]))) {}
+  [[nodiscard]] bool touches(const glm::dvec3& l, const glm::dvec3& h) const {
+    return low.x <= h.x && high.x >= l.x && low.y <= h.y && high.y >= l.y && low.z <= h.z && high.z >= l.z;
+  }
+  void add(const Piece& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  Corners corner;
+  glm::dvec3 low, high;
+};
+
+bool cross(const Piece& a, const Piece& b) {
+  if (!a.touches(b.low, b.high)) return false;
+  const Corners& p = a.corner;
+  const Corners& q = b.corner;
+  const glm::dvec3 na = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const glm::dvec3 nb = glm::cross(q[1] - q[0], q[2] - q[0]);
   const double la = glm::length(na);
   const double lb = glm::length(nb);
   if (!(la > 1e-9) || !(lb > 1e-9)) return false;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = k == 2 ? 0 : k + 1;
-    if (pierces(a[k], a[next], b, nb / lb) || pierces(b[k], b[next], a, na / la)) return true;
+    if (pierces(p[k], p[next], q, nb / lb) || pierces(q[k], q[next], p, na / la)) return true;
   }
   return false;
 }
@@ -65,31 +81,59 @@ void CrossingFinder::update(const std::vector<FaceId>& faces) {
 }
 
 bool CrossingFinder::makes_crossing(const Moved& moved) const {
-  const auto now = [&](const Face& f) {
-    return Corners{mesh_.at(f.point[0]), mesh_.at(f.point[1]), mesh_.at(f.point[2])};
+  const auto now = [&](FaceId f) {
+    const auto& p = mesh_.faces[f].point;
+    return Piece{{mesh_.at(p[0]), mesh_.at(p[1]), mesh_.at(p[2])}};
   };
-  const auto then = [&](const Face& f) {
-    return Corners{moved.at(f.point[0]), moved.at(f.point[1]), moved.at(f.point[2])};
+  const auto then = [&](FaceId f) {
+    const auto& p = mesh_.faces[f].point;
+    return Piece{{moved.at(p[0]), moved.at(p[1]), moved.at(p[2])}};
   };
+  // What ends as a line crosses nothing.
+  std::vector<std::pair<FaceId, Piece>> movers;
   for (const FaceId f : moved.faces()) {
-    const Face& face = mesh_.faces[f];
-    const Corners t = then(face);
-    bool found = false;
+    const auto& p = mesh_.faces[f].point;
+    const std::array<std::uint32_t, 3> q{moved.point(p[0]), moved.point(p[1]), moved.point(p[2])};
+    if (q[0] != q[1] && q[1] != q[2] && q[2] != q[0]) movers.emplace_back(f, then(f));
+  }
+  // A part at a time; nearly always there is only one.
+  for (auto begin = movers.begin(); begin != movers.end();) {
+    const FaceId first = begin->first;
+    const auto end = std::stable_partition(begin, movers.end(),
+                                           [&](const auto& mover) { return parts_.same_part(first, mover.first); });
+    Piece all = begin->second;
+    for (auto m = begin; m != end; ++m) all.add(m->second);
+    // A face that moves itself is looked for where it was: two that move meet rarely, and where they end is near.
     const auto meets = [&](FaceId g) {
-      const Face& other = mesh_.faces[g];
-      return g != f && other.live && cross(t, then(other)) && !cross(now(face), now(other));
+      const Piece other = then(g);
+      return other.touches(all.low, all.high) && std::any_of(begin, end, [&](const auto& mover) {
+               return g != mover.first && cross(mover.second, other) && !cross(now(mover.first), now(g));
+             });
     };
-    const std::vector<FaceId>& part = parts_.part_of(f);
+    const glm::vec3 low{all.low};
+    const glm::vec3 high{all.high};
+    const auto is_near = [&](FaceId g) {
+      const Face& face = mesh_.faces[g];
+      const glm::vec3& a = mesh_.place[face.point[0]];
+      const glm::vec3& b = mesh_.place[face.point[1]];
+      const glm::vec3& c = mesh_.place[face.point[2]];
+      const auto apart = [&](int k) {
+        return std::max({a[k], b[k], c[k]}) < low[k] || std::min({a[k], b[k], c[k]}) > high[k];
+      };
+      return face.live && !apart(0) && !apart(1) && !apart(2);
+    };
+    bool found = false;
+    const std::vector<FaceId>& part = parts_.part_of(first);
     if (part.size() <= small_part) {
-      found = std::any_of(part.begin(), part.end(), meets);
+      found = std::any_of(part.begin(), part.end(), [&](FaceId g) { return is_near(g) && meets(g); });
     } else {
-      // A face that moves itself is met where it is: two that move meet rarely, and where they end is near.
-      index_.visit(glm::min(t[0], glm::min(t[1], t[2])), glm::max(t[0], glm::max(t[1], t[2])), [&](FaceId g) {
-        found = parts_.same_part(f, g) && meets(g);
+      index_.visit(all.low, all.high, [&](FaceId g) {
+        found = mesh_.faces[g].live && parts_.same_part(first, g) && meets(g);
         return !found;
       });
     }
     if (found) return true;
+    begin = end;
   }
   return false;
 }

@@ -55,16 +55,6 @@ bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Ver
   return true;
 }
 
-// Edges at a point that are borders or where materials meet.
-struct Spoke {
-  std::uint32_t to = none;
-  std::uint32_t faces = 0;
-  MaterialId material = none;
-  bool mixed = false;
-  bool border = true;    // all faces lie on one side of it: one face, or sheets that lie on each other
-  glm::dvec3 side{0.0};  // from the edge into the first face, unit
-};
-
 glm::dvec3 side_of(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& apex) {
   const glm::dvec3 along = to - from;
   const double length2 = glm::dot(along, along);
@@ -73,107 +63,17 @@ glm::dvec3 side_of(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec
   return length > line_height_m ? side / length : glm::dvec3{0.0};
 }
 
-void find_spokes(const FacetMesh& mesh, std::uint32_t u, std::vector<Spoke>& spokes) {
-  spokes.clear();
-  for (const FaceId f : mesh.faces_of[u]) {
-    const MaterialId material = mesh.source->face_material(f);
-    const auto& p = mesh.faces[f].point;
-    const std::size_t k = p[0] == u ? 0 : p[1] == u ? 1 : 2;
-    const std::uint32_t a = p[k == 2 ? 0 : k + 1];
-    const std::uint32_t b = p[k == 0 ? 2 : k - 1];
-    spokes.push_back({a, 1, material, false, true, side_of(mesh.at(u), mesh.at(a), mesh.at(b))});
-    spokes.push_back({b, 1, material, false, true, side_of(mesh.at(u), mesh.at(b), mesh.at(a))});
-  }
-  std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) { return a.to < b.to; });
-  std::size_t end = 0;
-  for (std::size_t i = 0; i < spokes.size(); ++i) {
-    if (end > 0 && spokes[end - 1].to == spokes[i].to) {
-      ++spokes[end - 1].faces;
-      Spoke& spoke = spokes[end - 1];
-      spoke.mixed = spoke.mixed || spoke.material != spokes[i].material;
-      spoke.border = spoke.border && glm::dot(spoke.side, spokes[i].side) > one_side_cosine;
-    } else {
-      spokes[end++] = spokes[i];
-    }
-  }
-  spokes.resize(end);
+double longest_squared(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  return std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
 }
 
-// The faces around u and v must have no common neighbours but the third corners of the faces between them, or sheets
-// would stick together. Asked only where both are manifold.
-bool link_holds(const FacetMesh& mesh, const std::vector<Spoke>& spokes, std::uint32_t u, std::uint32_t v) {
-  std::uint32_t shared = 0;
-  for (const Spoke& s : spokes) {
-    if (s.faces > 2) return true;
-    if (s.to == v) shared = s.faces;
-  }
-  thread_local std::vector<Spoke> others;
-  find_spokes(mesh, v, others);
-  std::uint32_t common = 0;
-  auto at = spokes.begin();
-  for (const Spoke& s : others) {
-    if (s.faces > 2) return true;
-    while (at != spokes.end() && at->to < s.to) ++at;
-    if (at != spokes.end() && at->to == s.to && s.to != u) ++common;
-  }
-  if (spokes.size() == 3 && others.size() == 3 && shared == 2) return false;
-  return common == shared;
+// Of a triangle with twice that area.
+bool is_taller(double twice_area_m2, double longest_squared_m2, double height_m) {
+  return twice_area_m2 * twice_area_m2 > height_m * height_m * longest_squared_m2;
 }
 
 double segment_distance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
   return std::sqrt(squared_distance_to_segment(p, a, b));
-}
-
-// Whether the faces around lose area (a hole grows), or the material that is rarer in the whole building gains area on
-// the other ones (a window grows).
-bool goes_the_wrong_way(const FacetMesh& mesh, const Moved& moved, bool border) {
-  MaterialId common = none;
-  double gain = 0.0;
-  double rare_gain = 0.0;  // of all others than the most common material
-  const auto area = [&](MaterialId m) { return mesh.material_area_m2[m]; };
-  for (const FaceId f : moved.faces()) {
-    const MaterialId m = mesh.source->face_material(f);
-    if (common == none || area(m) > area(common)) common = m;
-  }
-  for (const FaceId f : moved.faces()) {
-    const auto& p = mesh.faces[f].point;
-    const glm::dvec3 after = glm::cross(moved.at(p[1]) - moved.at(p[0]), moved.at(p[2]) - moved.at(p[0]));
-    const double more = glm::length(after) - glm::length(mesh.area_vector(mesh.faces[f]));
-    gain += more;
-    if (mesh.source->face_material(f) != common) rare_gain += more;
-  }
-  return border ? gain < -1e-6 : rare_gain > 1e-6;
-}
-
-// How far the lines through u leave their place when u goes to v.
-void judge_lines(const FacetMesh& mesh, const Moved& moved, const std::vector<Spoke>& spokes, std::uint32_t u,
-                 std::uint32_t v, Verdict& verdict) {
-  const glm::dvec3 from = mesh.at(u);
-  const glm::dvec3 to = mesh.at(v);
-  double v_to_old = std::numeric_limits<double>::infinity();
-  bool any = false;
-  bool border = false;
-  for (const Spoke& s : spokes) {
-    if (!s.border && !s.mixed) continue;
-    any = true;
-    border = border || s.border;
-    v_to_old = std::min(v_to_old, s.to == v ? 0.0 : segment_distance(to, mesh.at(s.to), from));
-  }
-  if (!any) return;
-  verdict.error_m = std::max(verdict.error_m, v_to_old);
-  double swept = 0.0;
-  bool ends = true;
-  for (const Spoke& s : spokes) {
-    if ((!s.border && !s.mixed) || s.to == v) continue;
-    ends = false;
-    const glm::dvec3 w = mesh.at(s.to);
-    const double away = std::max(segment_distance(from, w, to), v_to_old);
-    swept += 0.5 * glm::length(glm::cross(w - from, to - from)) * away * away / 3.0;
-    verdict.error_m = std::max(verdict.error_m, away);
-  }
-  // A line that ends here shrinks.
-  if (ends) verdict.error_m = std::max(verdict.error_m, glm::length(to - from));
-  verdict.cost += swept * (goes_the_wrong_way(mesh, moved, border) ? growth_weight : border ? 1.0 : outline_weight);
 }
 
 // A face between u and v goes. Where no other face keeps the line from its third corner to v, all of it is lost.
@@ -200,27 +100,167 @@ void add_deviation(const FacetMesh& mesh, std::span<const Move> moves, Verdict& 
 
 }  // namespace
 
-Verdict judge_slide(const FacetMesh& mesh, Moved& moved, const Move& move, double most_cost) {
-  Verdict verdict;
-  moved.set({&move, 1});
-  for (const FaceId f : moved.faces()) {
-    const Face& face = mesh.faces[f];
+void SlideJudge::look_at(std::uint32_t point) {
+  from_ = mesh_.at(point);
+  point_ = point;
+  faces_.clear();
+  spokes_.clear();
+  for (const FaceId f : mesh_.faces_of[point]) {
+    const Face& face = mesh_.faces[f];
     const auto& p = face.point;
-    if (p[0] == move.onto || p[1] == move.onto || p[2] == move.onto) {
-      ++verdict.faces_gone;
-      judge_loss(mesh, face, move.point, move.onto, verdict);
-      continue;
-    }
-    const double height = height_m(moved.at(p[0]), moved.at(p[1]), moved.at(p[2]));
-    if (height < line_height_m && height_m(mesh.at(p[0]), mesh.at(p[1]), mesh.at(p[2])) > sliver_m) return verdict;
-    if (!judge_face(mesh, moved, face, verdict) || verdict.cost > most_cost) return verdict;
+    const std::size_t k = p[0] == point ? 0 : p[1] == point ? 1 : 2;
+    SlidingFace s;
+    s.face = &face;
+    s.a = p[k == 2 ? 0 : k + 1];
+    s.b = p[k == 0 ? 2 : k - 1];
+    s.at_a = mesh_.at(s.a);
+    s.at_b = mesh_.at(s.b);
+    s.before = glm::cross(s.at_a - from_, s.at_b - from_);
+    s.length_before = glm::length(s.before);
+    s.tall_before = is_taller(s.length_before, longest_squared(from_, s.at_a, s.at_b), sliver_m);
+    s.material = mesh_.source->face_material(f);
+    s.detail = mesh_.surfaces.surfaces[face.surface].area_m2 < detail_area_m2;
+    spokes_.push_back({s.a, 1, s.material, false, true, side_of(from_, s.at_a, s.at_b)});
+    spokes_.push_back({s.b, 1, s.material, false, true, side_of(from_, s.at_b, s.at_a)});
+    faces_.push_back(s);
   }
-  thread_local std::vector<Spoke> spokes;
-  find_spokes(mesh, move.point, spokes);
-  judge_lines(mesh, moved, spokes, move.point, move.onto, verdict);
-  add_deviation(mesh, {&move, 1}, verdict);
-  verdict.allowed =
-      verdict.faces_gone != 0 && verdict.cost <= most_cost && link_holds(mesh, spokes, move.point, move.onto);
+  join_spokes();
+}
+
+void SlideJudge::join_spokes() {
+  std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) { return a.to < b.to; });
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < spokes_.size(); ++i) {
+    if (end > 0 && spokes_[end - 1].to == spokes_[i].to) {
+      Spoke& spoke = spokes_[end - 1];
+      ++spoke.faces;
+      spoke.mixed = spoke.mixed || spoke.material != spokes_[i].material;
+      spoke.border = spoke.border && glm::dot(spoke.side, spokes_[i].side) > one_side_cosine;
+    } else {
+      spokes_[end++] = spokes_[i];
+    }
+  }
+  spokes_.resize(end);
+  lines_ = std::any_of(spokes_.begin(), spokes_.end(), [](const Spoke& s) { return s.border || s.mixed; });
+  complex_ = std::any_of(spokes_.begin(), spokes_.end(), [](const Spoke& s) { return s.faces > 2; });
+}
+
+// Adds what happens to one face that keeps its corners; false if it must not.
+bool SlideJudge::judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict) const {
+  const glm::dvec3 after = glm::cross(s.at_a - to, s.at_b - to);
+  const double length = glm::length(after);
+  s.length_after = length;
+  const double longest2 = longest_squared(to, s.at_a, s.at_b);
+  const bool tall = is_taller(length, longest2, sliver_m);
+  if (s.tall_before) {
+    if (!is_taller(length, longest2, line_height_m)) return false;
+    if (tall && glm::dot(s.before, after) < flip_cosine * s.length_before * length) return false;
+  }
+  const double distance = std::abs(glm::dot(s.face->normal, to - from_));
+  verdict.error_m = std::max(verdict.error_m, distance);
+  // What strayed before strays further: (a + b)^2 is more than a^2 + b^2.
+  verdict.cost += 0.5 * length * (mean_square(distance, 0.0, 0.0) + drift_weight * distance * deviation_m / 3.0);
+  if (!tall) return true;
+  const glm::dvec3 across = glm::cross(s.face->normal, after);
+  const double sine2 = glm::dot(across, across) / (length * length);
+  if (sine2 > tilt_sine * tilt_sine) {
+    verdict.tilts = true;
+    const double arm = s.detail ? detail_arm_m : plane_arm_m;
+    verdict.cost += 0.5 * length * sine2 * arm * arm;
+  }
+  return true;
+}
+
+// Whether the faces around lose area (a hole grows), or the material that is rarer in the whole building gains area on
+// the other ones (a window grows).
+bool SlideJudge::goes_the_wrong_way(bool border) const {
+  MaterialId common = none;
+  double gain = 0.0;
+  double rare_gain = 0.0;  // of all others than the most common material
+  const auto area = [&](MaterialId m) { return mesh_.material_area_m2[m]; };
+  for (const SlidingFace& s : faces_) {
+    if (common == none || area(s.material) > area(common)) common = s.material;
+  }
+  for (const SlidingFace& s : faces_) {
+    const double more = s.length_after - s.length_before;
+    gain += more;
+    if (s.material != common) rare_gain += more;
+  }
+  return border ? gain < -1e-6 : rare_gain > 1e-6;
+}
+
+// How far the lines through the point leave their place when it goes to v.
+void SlideJudge::judge_lines(std::uint32_t v, Verdict& verdict) const {
+  const glm::dvec3 to = mesh_.at(v);
+  double v_to_old = std::numeric_limits<double>::infinity();
+  bool border = false;
+  for (const Spoke& s : spokes_) {
+    if (!s.border && !s.mixed) continue;
+    border = border || s.border;
+    v_to_old = std::min(v_to_old, s.to == v ? 0.0 : segment_distance(to, mesh_.at(s.to), from_));
+  }
+  verdict.error_m = std::max(verdict.error_m, v_to_old);
+  double swept = 0.0;
+  bool ends = true;
+  for (const Spoke& s : spokes_) {
+    if ((!s.border && !s.mixed) || s.to == v) continue;
+    ends = false;
+    const glm::dvec3 w = mesh_.at(s.to);
+    const double away = std::max(segment_distance(from_, w, to), v_to_old);
+    swept += 0.5 * glm::length(glm::cross(w - from_, to - from_)) * away * away / 3.0;
+    verdict.error_m = std::max(verdict.error_m, away);
+  }
+  // A line that ends here shrinks.
+  if (ends) verdict.error_m = std::max(verdict.error_m, glm::length(to - from_));
+  verdict.cost += swept * (goes_the_wrong_way(border) ? growth_weight : border ? 1.0 : outline_weight);
+}
+
+// The faces around both ends must have no common neighbours but the third corners of the faces between them, or sheets
+// would stick together. Asked only where both are manifold.
+bool SlideJudge::link_holds(std::uint32_t v) {
+  if (complex_) return true;
+  others_.clear();
+  for (const FaceId f : mesh_.faces_of[v]) {
+    for (const std::uint32_t p : mesh_.faces[f].point) {
+      if (p != v) others_.push_back(p);
+    }
+  }
+  std::sort(others_.begin(), others_.end());
+  std::uint32_t common = 0;
+  std::uint32_t count = 0;
+  auto at = spokes_.begin();
+  for (std::size_t i = 0; i < others_.size();) {
+    const std::uint32_t to = others_[i];
+    std::size_t end = i;
+    while (end < others_.size() && others_[end] == to) ++end;
+    if (end - i > 2) return true;
+    i = end;
+    ++count;
+    while (at != spokes_.end() && at->to < to) ++at;
+    if (at != spokes_.end() && at->to == to && to != point_) ++common;
+  }
+  const auto edge = std::find_if(spokes_.begin(), spokes_.end(), [v](const Spoke& s) { return s.to == v; });
+  const std::uint32_t shared = edge == spokes_.end() ? 0 : edge->faces;
+  if (spokes_.size() == 3 && count == 3 && shared == 2) return false;
+  return common == shared;
+}
+
+Verdict SlideJudge::judge(std::uint32_t onto, double most_cost) {
+  Verdict verdict;
+  const glm::dvec3 to = mesh_.at(onto);
+  const double deviation_m = mesh_.deviation_m[point_];
+  for (SlidingFace& s : faces_) {
+    if (s.a == onto || s.b == onto) {
+      ++verdict.faces_gone;
+      s.length_after = 0.0;
+      judge_loss(mesh_, *s.face, point_, onto, verdict);
+    } else if (!judge_face(s, to, deviation_m, verdict) || verdict.cost > most_cost) {
+      return verdict;
+    }
+  }
+  if (lines_) judge_lines(onto, verdict);
+  verdict.error_m = std::hypot(verdict.error_m, deviation_m);
+  verdict.allowed = verdict.faces_gone != 0 && verdict.cost <= most_cost && link_holds(onto);
   return verdict;
 }
 

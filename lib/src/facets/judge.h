@@ -18,9 +18,54 @@ struct Verdict {
   [[nodiscard]] double key() const noexcept { return cost / (faces_gone == 0 ? 1 : faces_gone); }
 };
 
-// A point slides onto a neighbour. Looks at borders and at the outlines of materials as well. Not allowed if it costs
-// more than `most_cost`.
-[[nodiscard]] Verdict judge_slide(const FacetMesh& mesh, Moved& moved, const Move& move, double most_cost);
+// Judges slides of a point onto its neighbours. Looks at borders and at the outlines of materials as well.
+class SlideJudge {
+ public:
+  explicit SlideJudge(const FacetMesh& mesh) : mesh_(mesh) {}
+
+  // An edge at the point.
+  struct Spoke {
+    std::uint32_t to = none;
+    std::uint32_t faces = 0;
+    MaterialId material = none;
+    bool mixed = false;    // materials meet at it
+    bool border = true;    // all faces lie on one side of it: one face, or sheets that lie on each other
+    glm::dvec3 side{0.0};  // from the edge into the first face, unit
+  };
+
+  void look_at(std::uint32_t point);
+  // Of the point that was looked at last, ascending by `to`; until the mesh changes.
+  [[nodiscard]] const std::vector<Spoke>& spokes() const noexcept { return spokes_; }
+  // Not allowed if it costs more than `most_cost`.
+  [[nodiscard]] Verdict judge(std::uint32_t onto, double most_cost);
+
+ private:
+  // A face around the point with what does not depend on where that goes.
+  struct SlidingFace {
+    const Face* face = nullptr;
+    std::uint32_t a = none, b = none;  // the next two corners
+    glm::dvec3 at_a{0.0}, at_b{0.0};
+    glm::dvec3 before{0.0};  // twice the area long
+    double length_before = 0.0, length_after = 0.0;
+    MaterialId material = none;
+    bool tall_before = false;  // has a direction worth keeping
+    bool detail = false;
+  };
+  void join_spokes();
+  [[nodiscard]] bool judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict) const;
+  void judge_lines(std::uint32_t v, Verdict& verdict) const;
+  [[nodiscard]] bool goes_the_wrong_way(bool border) const;
+  [[nodiscard]] bool link_holds(std::uint32_t v);
+
+  const FacetMesh& mesh_;
+  std::uint32_t point_ = none;
+  glm::dvec3 from_{0.0};
+  std::vector<SlidingFace> faces_;
+  std::vector<Spoke> spokes_;
+  std::vector<std::uint32_t> others_;  // neighbours of the other end
+  bool lines_ = false;                 // some spoke is a border or mixed
+  bool complex_ = false;               // some spoke has three faces or more
+};
 
 // Planes move: whatever stands between them and their new place shrinks.
 [[nodiscard]] Verdict judge_shift(const FacetMesh& mesh, Moved& moved, std::span<const Move> moves);

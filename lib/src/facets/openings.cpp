@@ -23,6 +23,7 @@ constexpr double most_depth_m = 1.5;   // behind the wall
 constexpr double most_height_m = 0.4;  // before it
 constexpr double margin_m = 0.1;       // frames may reach so far under the wall
 constexpr double covered = 0.6;        // of the hole, at least: what went before counts as open only if it was much
+constexpr double look_ahead = 16.0;    // times the price
 constexpr double look_weight = 0.2;    // of a window that goes, beside a hole that closes
 
 struct Plane {
@@ -359,19 +360,18 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening) {
   const Plane plane = plane_of(mesh_, opening);
   const Shape shape{mesh_, opening, plane.normal};
   std::vector<FaceId> content;
-  const auto stands_in = [&](const Face& face) {
-    return std::all_of(face.point.begin(), face.point.end(), [&](std::uint32_t p) {
-      const double h = plane.height(mesh_.at(p));
-      return h > -most_depth_m && h < most_height_m && shape.contains(mesh_.at(p), margin_m);
-    });
+  const auto stands_in = [&](std::uint32_t p) {
+    const double h = plane.height(mesh_.at(p));
+    return h > -most_depth_m && h < most_height_m && shape.contains(mesh_.at(p), margin_m);
   };
   ++look_;
   cells_.visit_points(box_of(opening), [&](std::uint32_t p) {
+    if (!stands_in(p)) return;
     for (const FaceId f : mesh_.faces_of[p]) {
       if (looked_at_[f] == look_) continue;
       looked_at_[f] = look_;
       const Face& face = mesh_.faces[f];
-      if (!stands_in(face)) continue;
+      if (!std::all_of(face.point.begin(), face.point.end(), stands_in)) continue;
       // The wall itself may run around a bend of the outline.
       const glm::dvec3 center = (mesh_.at(face.point[0]) + mesh_.at(face.point[1]) + mesh_.at(face.point[2])) / 3.0;
       if (shape.contains(center, 0.0) || !lies_in(mesh_, face, plane.normal, plane.offset_m)) content.push_back(f);
@@ -489,6 +489,11 @@ PointCells::Box Openings::box_of(const Opening& opening) const {
 
 std::optional<OpeningJob> Openings::job(const Opening& opening, double price, double most_error_m) {
   if (!mesh_.faces[opening.wall].live) return std::nullopt;
+  // What is far from the price is not looked at anew whenever something near it changes.
+  if (const auto at = known_.find(opening.loop);
+      at != known_.end() && std::isfinite(at->second.key) && at->second.key > look_ahead * price) {
+    return std::nullopt;
+  }
   std::uint64_t state = cells_.last_change(box_of(opening));
   for (const std::uint32_t p : opening.loop) state = 31 * state + mesh_.version[p];
   Known& known = known_[opening.loop];

@@ -2,6 +2,7 @@
 #include "facets/parts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/disjoint_sets.h"
@@ -13,13 +14,15 @@ constexpr std::size_t most_part_faces = 256;  // larger ones lose facets first
 constexpr double held_m = 0.03;               // an outline nearer to the rest than this lies on it
 constexpr double held_share = 0.9;            // of the corners of a pane that closes an opening
 constexpr double long_edge_m = 0.6;           // over shorter ones the distance runs straight
-constexpr double look_ahead = 16.0;  // times the price: so far costs are found, so that not each price asks anew
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double look_ahead = 4096.0;  // times the price: so far costs are found, so that not each price asks anew
 
 }  // namespace
 
 PartFinder::PartFinder(const FacetMesh& mesh)
     : mesh_(mesh), around_(mesh), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
-  distance_m_.resize(mesh.point_count());
+  corners_.resize(mesh.point_count());
+  middles_.resize(std::bit_ceil(mesh.point_count() / 2 + 1));
   measured_.resize(mesh.point_count(), 0);
   split();
 }
@@ -67,7 +70,7 @@ bool PartFinder::closes_opening(double limit_m) const {
     if (!faces_across(f)) continue;
     for (const std::uint32_t p : mesh_.faces[f].point) {
       ++corners;
-      held += distance_m_[p] < held_m + double{mesh_.deviation_m[p]} ? 1 : 0;
+      held += corners_[p].distance_m < held_m + double{mesh_.deviation_m[p]} ? 1 : 0;
     }
   }
   if (held < held_share * corners) return false;
@@ -83,37 +86,49 @@ bool PartFinder::closes_opening(double limit_m) const {
   return 2.0 * open > whole;
 }
 
-// Nothing within the limit: infinity.
-double PartFinder::sample(const glm::dvec3& p, double limit_m) {
-  const Surroundings::Nearest found = around_.nearest(p, id_, limit_m, last_nearest_);
-  if (found.face == none) return found.distance_m;
-  last_nearest_ = found.face;
-  part_.error_m = std::max(part_.error_m, found.distance_m);
-  const auto& support = mesh_.faces[found.face].point;
+// How far p is from the rest, infinite if there is nothing within the limit. As long as neither the point nor what it
+// is nearest to has changed, what was found before holds: what is left of the rest comes nearer rarely.
+double PartFinder::sample(const glm::dvec3& p, std::uint32_t version, double limit_m, Sample& known) {
+  const bool same = known.version == version;
+  if (same && known.face == none && known.distance_m >= limit_m) return infinity;
+  if (!same || known.face == none || !mesh_.faces[known.face].live || part_of_[known.face] == id_ ||
+      mesh_.state_of(known.face) != known.state) {
+    const Surroundings::Nearest found = around_.nearest(p, id_, limit_m, last_nearest_);
+    if (found.face == none) {
+      known = {.version = version, .distance_m = limit_m};
+      return infinity;
+    }
+    known = {version, found.face, mesh_.state_of(found.face), found.distance_m};
+    last_nearest_ = found.face;
+  }
+  if (known.distance_m > limit_m) return infinity;
+  part_.error_m = std::max(part_.error_m, known.distance_m);
+  const auto& support = mesh_.faces[known.face].point;
   if (part_.support.size() < 3 || !std::equal(support.begin(), support.end(), part_.support.end() - 3))
     part_.support.insert(part_.support.end(), support.begin(), support.end());
-  return found.distance_m;
+  return known.distance_m;
 }
 
 double PartFinder::at_corner(std::uint32_t p, double limit_m) {
   if (measured_[p] != measurement_) {
-    const double d = sample(mesh_.at(p), limit_m);
+    const double d = sample(mesh_.at(p), mesh_.version[p], limit_m, corners_[p]);
     if (std::isinf(d)) return d;
-    distance_m_[p] = d;
     measured_[p] = measurement_;
   }
-  return distance_m_[p];
+  return corners_[p].distance_m;
 }
 
 double PartFinder::at_middle(std::uint32_t p, std::uint32_t q, double limit_m) {
   if (q < p) std::swap(p, q);
-  Middle& known = middles_[(p * 31ULL + q) % middles_.size()];
-  if (known.measurement != measurement_ || known.low != p || known.high != q) {
-    const double d = sample(0.5 * (mesh_.at(p) + mesh_.at(q)), limit_m);
+  Middle& known = middles_[(p * 0x9E3779B1U ^ q * 0x85EBCA6BU) % middles_.size()];
+  if (known.low != p || known.high != q) known = {.low = p, .high = q};
+  if (known.measurement != measurement_) {
+    const std::uint32_t version = mesh_.version[p] + mesh_.version[q];
+    const double d = sample(0.5 * (mesh_.at(p) + mesh_.at(q)), version, limit_m, known.sample);
     if (std::isinf(d)) return d;
-    known = {p, q, measurement_, d};
+    known.measurement = measurement_;
   }
-  return known.distance_m;
+  return known.sample.distance_m;
 }
 
 // What the face costs, infinite if that is more than `most`; from its corners alone it is what it costs at least. Looks
@@ -206,8 +221,9 @@ std::vector<Part> PartFinder::find(double limit_m, double price) {
     if (faces.size() == most || faces.size() > most_part_faces) continue;
     Known& known = known_[faces.front()];
     const std::uint64_t state = state_of(faces);
-    if (known.state == state && known.key > price) continue;
-    if (known.state != state) known = {.state = state};
+    // A part that has lost faces since costs more for each of those left.
+    if (known.key > price) continue;
+    if (known.state != state) known = {.state = state, .key = known.key};
     if (!ready) around_.update(part_of_);
     ready = true;
     id_ = id;

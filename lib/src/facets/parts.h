@@ -47,7 +47,14 @@ class PartFinder {
   [[nodiscard]] double cost_of(const Face& face, Look look, double limit_m, double most);
   [[nodiscard]] double at_corner(std::uint32_t p, double limit_m);
   [[nodiscard]] double at_middle(std::uint32_t p, std::uint32_t q, double limit_m);
-  [[nodiscard]] double sample(const glm::dvec3& p, double limit_m);
+  // The distance of a place from the rest, when it was looked for last.
+  struct Sample {
+    std::uint32_t version = none;  // of the place
+    FaceId face = none;            // the nearest; none: there is nothing within distance_m
+    std::uint64_t state = 0;       // of that face
+    double distance_m = 0.0;
+  };
+  [[nodiscard]] double sample(const glm::dvec3& p, std::uint32_t version, double limit_m, Sample& known);
   [[nodiscard]] std::uint64_t support_state(const Part& part) const;
   [[nodiscard]] bool closes_opening(double limit_m) const;
 
@@ -57,17 +64,19 @@ class PartFinder {
   std::vector<std::vector<FaceId>> parts_;  // faces, ascending
   std::vector<Known> known_;                // per face: of the part whose first face it is
 
-  // Of the part that is measured:
   struct Middle {
-    std::uint32_t low = none, high = none, measurement = 0;
-    double distance_m = 0.0;
+    std::uint32_t low = none, high = none;  // ends of the edge
+    std::uint32_t measurement = 0;          // for which the sample holds
+    Sample sample;
   };
+  std::vector<Sample> corners_;  // per point
+  std::vector<Middle> middles_;  // of edges, by their hash; the last one stays
+
+  // Of the part that is measured:
   std::uint32_t id_ = none;
   Part part_;
   std::uint32_t measurement_ = 0;
-  std::vector<double> distance_m_;       // per point
-  std::vector<std::uint32_t> measured_;  // per point: the measurement for which distance_m_ holds
-  std::array<Middle, 1024> middles_;     // of edges, by their hash; the last one stays
+  std::vector<std::uint32_t> measured_;  // per point: the measurement for which its sample holds
   FaceId last_nearest_ = none;           // to the sample before
 };
 

@@ -27,7 +27,7 @@ Planner::Planner(const FacetMesh& mesh)
       point_stamp_(mesh.point_count(), 0),
       point_index_(mesh.point_count(), 0),
       face_stamp_(mesh.faces.size(), 0) {
-  for (auto& stamps : surface_round_) stamps.assign(mesh.surface_faces.size(), 0);
+  surface_round_.assign(mesh.surface_faces.size(), 0);
 }
 
 bool Planner::in_group_plane(const Face& face) const {
@@ -175,23 +175,23 @@ bool Planner::goes_to_greater(double way) const {
   return !any || area >= 0.999 * area_m2_;
 }
 
-Plan Planner::plan(std::uint32_t surface, Direction direction) {
-  Plan plan;
-  auto& seen = surface_round_[static_cast<std::size_t>(direction)];
-  if (seen[surface] == round_ || !gather(surface)) return plan;
-  for (const FaceId f : faces_) seen[mesh_.faces[f].surface] = round_;
-  for (Runner& runner : runners_) {
-    if (!find_speed(runner)) return plan;
-  }
-  plan.way_m = next_event(direction == Direction::Outwards ? 1.0 : -1.0);
-  if (plan.way_m == 0.0) return plan;
-  join_meeting(plan.way_m);
-  if (!goes_to_greater(plan.way_m)) return plan;
+bool Planner::look_at(std::uint32_t surface) {
+  if (surface_round_[surface] == round_ || !gather(surface)) return false;
+  for (const FaceId f : faces_) surface_round_[mesh_.faces[f].surface] = round_;
+  return std::all_of(runners_.begin(), runners_.end(), [&](Runner& runner) { return find_speed(runner); });
+}
+
+Plan Planner::plan(double way_m) {
+  Plan plan{.way_m = way_m};
+  if (way_m == 0.0) return plan;
+  for (Runner& runner : runners_) runner.onto = none;
+  join_meeting(way_m);
+  if (!goes_to_greater(way_m)) return plan;
   for (const Runner& runner : runners_) {
     const std::uint32_t end = runner.onto == none ? runner.point : runner.onto;
     const bool at_rest = point_stamp_[end] != now_;
-    plan.moves.push_back({runner.point, runner.onto,
-                          at_rest ? mesh_.place[end] : glm::vec3{mesh_.at(end) + plan.way_m * speed_of(end)}});
+    plan.moves.push_back(
+        {runner.point, runner.onto, at_rest ? mesh_.place[end] : glm::vec3{mesh_.at(end) + way_m * speed_of(end)}});
   }
   return plan;
 }

@@ -19,12 +19,19 @@ class Planner {
  public:
   explicit Planner(const FacetMesh& mesh);
 
-  // The plane of `surface`, with all faces that lie in it around the same points, moves until it meets the next plane
-  // of its family or until some edge has shrunk to nothing. Its points keep to the other planes they lie in. Empty if
-  // some point is held by three planes, if the next plane is less important, or if the group was planned already since
-  // begin_round().
+  // Looks at the plane of `surface`, with all faces that lie in it around the same points, which is to move until it
+  // meets the next plane of its family or until some edge has shrunk to nothing. Its points keep to the other planes
+  // they lie in. False if some point is held by three planes, or if the group was looked at since begin_round().
   void begin_round() { ++round_; }
-  [[nodiscard]] Plan plan(std::uint32_t surface, Direction direction);
+  [[nodiscard]] bool look_at(std::uint32_t surface);
+  // The way it would go, 0 if there is none.
+  [[nodiscard]] double way_m(Direction direction) const {
+    return next_event(direction == Direction::Outwards ? 1.0 : -1.0);
+  }
+  [[nodiscard]] double area_m2() const noexcept { return area_m2_; }
+  [[nodiscard]] std::size_t face_count() const noexcept { return faces_.size(); }
+  // Empty if there is no way, or if the next plane is less important.
+  [[nodiscard]] Plan plan(double way_m);
 
  private:
   struct Runner {
@@ -47,7 +54,7 @@ class Planner {
   double area_m2_ = 0.0;
   std::vector<FaceId> faces_;
   std::vector<Runner> runners_;
-  std::vector<std::uint32_t> point_stamp_, point_index_, face_stamp_, surface_round_[2];
+  std::vector<std::uint32_t> point_stamp_, point_index_, face_stamp_, surface_round_;
   std::uint32_t now_ = 0;
   std::uint32_t round_ = 0;
 };

@@ -39,12 +39,14 @@ void Surroundings::update(const std::vector<std::uint32_t>& part_of) {
     young.clear();
   }
   plant(young_, std::move(young));
+  std::vector<std::uint32_t> part;
   for (Grove* grove : {&old_, &young_}) {
-    grove->part.resize(grove->faces.size());
-    for (std::size_t i = 0; i < grove->faces.size(); ++i) {
+    part.resize(grove->faces.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
       const FaceId f = grove->faces[i];
-      grove->part[i] = grove == &young_ || stands(f) ? part_of[f] : none;
+      part[i] = grove == &young_ || stands(f) ? part_of[f] : none;
     }
+    grove->tree.set_labels(part);
   }
 }
 
@@ -57,8 +59,7 @@ Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t p
     if (d < limit_m) best = {d, hint};
   }
   for (const Grove* grove : {&old_, &young_}) {
-    const auto other = [&](FaceId i) { return grove->part[i] != part && grove->part[i] != none; };
-    const TriangleBvh::Nearest found = grove->tree.nearest_of(p, best.distance_m, other);
+    const TriangleBvh::Nearest found = grove->tree.nearest_unlike(p, best.distance_m, part);
     if (found.face != none) best = {std::sqrt(found.squared_distance), grove->faces[found.face]};
   }
   return best.face == none ? Nearest{} : best;
@@ -69,10 +70,9 @@ bool Surroundings::lies_behind(const glm::dvec3& p, const glm::dvec3& across, st
   bool found = false;
   for (const Grove* grove : {&old_, &young_}) {
     const auto across_it = [&](FaceId i) {
-      return grove->part[i] != part && grove->part[i] != none &&
-             std::abs(glm::dot(mesh_.faces[grove->faces[i]].normal, across)) > 0.7;
+      return std::abs(glm::dot(mesh_.faces[grove->faces[i]].normal, across)) > 0.7;
     };
-    grove->tree.within(p, limit_m, across_it, [&](FaceId i) {
+    grove->tree.within_unlike(p, limit_m, part, across_it, [&](FaceId i) {
       const Face& face = mesh_.faces[grove->faces[i]];
       const glm::dvec3 a = mesh_.at(face.point[0]);
       const double d = std::sqrt(squared_distance_to_triangle(p, a, mesh_.at(face.point[1]), mesh_.at(face.point[2])));

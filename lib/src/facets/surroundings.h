@@ -31,8 +31,7 @@ class Surroundings {
   // The faces as they were when the tree was built; those that went or moved since are left out.
   struct Grove {
     std::vector<FaceId> faces;
-    std::vector<std::uint32_t> part;  // per tree face, none if it is not there any more
-    TriangleBvh tree{{}, {}};
+    TriangleBvh tree{{}, {}};  // labelled by part, none where a face is not there any more
   };
   void plant(Grove& grove, std::vector<FaceId> faces) const;
   [[nodiscard]] bool stands(FaceId f) const;

@@ -152,4 +152,19 @@ TriangleBvh::TriangleBvh(std::span<const glm::vec3> positions, std::span<const V
   }
 }
 
+void TriangleBvh::set_labels(std::span<const std::uint32_t> label_of_face) {
+  labels_.resize(faces_.size());
+  for (std::size_t slot = 0; slot < faces_.size(); ++slot) labels_[slot] = label_of_face[faces_[slot]];
+  const auto join = [](std::uint32_t a, std::uint32_t b) { return a == none || a == b ? b : b == none ? a : mixed; };
+  node_labels_.resize(nodes_.size());
+  // Children come after their parents.
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    const Node& node = nodes_[i];
+    std::uint32_t label = none;
+    for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) label = join(label, labels_[slot]);
+    if (node.count == 0) label = join(node_labels_[i + 1], node_labels_[node.first]);
+    node_labels_[i] = label;
+  }
+}
+
 }  // namespace lodestone

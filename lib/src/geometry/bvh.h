@@ -61,18 +61,45 @@ class TriangleBvh {
     return best;
   }
 
+  // Gives every face a label; `none` takes it out of nearest_unlike() and within_unlike(). O(n).
+  void set_labels(std::span<const std::uint32_t> label_of_face);
+
+  // As nearest_of() and within() among the faces with a label other than this one. What is all of this label, however
+  // near, is passed over as a whole. Precondition: set_labels().
+  [[nodiscard]] Nearest nearest_unlike(const glm::dvec3& p, double limit, std::uint32_t label) const {
+    Nearest best;
+    best.squared_distance = limit * limit;
+    if (nodes_.empty()) return best;
+    descend(
+        p, [&] { return best.squared_distance; },
+        [&](std::uint32_t slot) {
+          if (labels_[slot] != label && labels_[slot] != none) consider(p, slot, best);
+          return true;
+        },
+        [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
+    return best;
+  }
+  template <class Wanted, class Visit>
+  void within_unlike(const glm::dvec3& p, double radius, std::uint32_t label, Wanted wanted, Visit visit) const {
+    if (nodes_.empty()) return;
+    descend(
+        p, [&, bound = inclusive(radius)] { return bound; },
+        [&](std::uint32_t slot) {
+          if (labels_[slot] == label || labels_[slot] == none || !wanted(faces_[slot])) return true;
+          return squared_distance(p, slot) > radius * radius || visit(faces_[slot]);
+        },
+        [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
+  }
+
   // Calls visit(face) for every triangle no farther than `radius` for which wanted(face), which is asked first, holds;
   // visit returns false to stop.
   template <class Wanted, class Visit>
   void within(const glm::dvec3& p, double radius, Wanted wanted, Visit visit) const {
     if (nodes_.empty()) return;
-    const double limit = radius * radius;
-    // The bound is exclusive below, hence the next larger number.
-    const double bound = std::nextafter(limit, std::numeric_limits<double>::infinity());
     descend(
-        p, [&] { return bound; },
+        p, [&, bound = inclusive(radius)] { return bound; },
         [&](std::uint32_t slot) {
-          return !wanted(faces_[slot]) || squared_distance(p, slot) > limit || visit(faces_[slot]);
+          return !wanted(faces_[slot]) || squared_distance(p, slot) > radius * radius || visit(faces_[slot]);
         });
   }
 
@@ -100,9 +127,19 @@ class TriangleBvh {
     if (d < best.squared_distance) best = {d, faces_[slot], slot};
   }
 
+  // descend() takes an exclusive bound, hence the next larger number.
+  [[nodiscard]] static double inclusive(double radius) noexcept {
+    return std::nextafter(radius * radius, std::numeric_limits<double>::infinity());
+  }
+
   // Calls visit(slot) for the triangles of leaves nearer than bound(), nearer ones first, until it returns false.
   template <class Bound, class Visit>
   void descend(const glm::dvec3& p, Bound bound, Visit visit) const {
+    descend(p, bound, visit, [](std::uint32_t) { return false; });
+  }
+  // Leaves out nodes for which skips(node).
+  template <class Bound, class Visit, class Skips>
+  void descend(const glm::dvec3& p, Bound bound, Visit visit, Skips skips) const {
     std::array<std::pair<double, std::uint32_t>, most_depth + 1> stack;
     std::size_t top = 0;
     stack[top++] = {nodes_[0].squared_distance(p), 0};
@@ -117,8 +154,8 @@ class TriangleBvh {
       std::pair near{nodes_[index + 1].squared_distance(p), index + 1};
       std::pair far{nodes_[node.first].squared_distance(p), node.first};
       if (far.first < near.first) std::swap(near, far);
-      if (far.first < bound()) stack[top++] = far;
-      if (near.first < bound()) stack[top++] = near;
+      if (far.first < bound() && !skips(far.second)) stack[top++] = far;
+      if (near.first < bound() && !skips(near.second)) stack[top++] = near;
     }
   }
 
@@ -127,6 +164,10 @@ class TriangleBvh {
   std::vector<Node> nodes_;  // depth first
   std::vector<std::array<glm::vec3, 3>> triangles_;
   std::vector<FaceId> faces_;
+  std::vector<std::uint32_t> labels_;       // per slot
+  std::vector<std::uint32_t> node_labels_;  // of all slots below that have one, or `mixed`
+
+  static constexpr std::uint32_t mixed = none - 1;
 };
 
 }  // namespace lodestone
