@@ -5,11 +5,10 @@
 
 namespace lodestone {
 
-void to_lodestone_axes(Mesh& mesh, SourceInfo& info, UpAxis file_up, double file_unit_m, const ReadOptions& options) {
+LoadedMesh to_lodestone_axes(Mesh mesh, std::string format, UpAxis file_up, double file_unit_m,
+                             const ReadOptions& options) {
   const UpAxis up = options.up != UpAxis::FromFile ? options.up : file_up;
   const double unit_m = options.unit_m > 0.0 ? options.unit_m : (file_unit_m > 0.0 ? file_unit_m : 1.0);
-  info.up_axis = up == UpAxis::Y ? "Y" : "Z";
-  info.unit_m = unit_m;
   if (up == UpAxis::Y) {
     mesh.origin = y_up_to_z_up(mesh.origin) + 0.0;  // no -0
     for (auto& p : mesh.vertices.positions) p = y_up_to_z_up(p);
@@ -19,6 +18,11 @@ void to_lodestone_axes(Mesh& mesh, SourceInfo& info, UpAxis file_up, double file
     mesh.origin *= unit_m;
     for (auto& p : mesh.vertices.positions) p = glm::vec3{glm::dvec3{p} * unit_m};
   }
+  LoadedMesh loaded{std::move(mesh), {}};
+  loaded.info.format = std::move(format);
+  loaded.info.up_axis = up == UpAxis::Y ? "Y" : "Z";
+  loaded.info.unit_m = unit_m;
+  return loaded;
 }
 
 glm::dvec3 choose_origin(const Box& bounds) noexcept {

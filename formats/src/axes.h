@@ -8,9 +8,10 @@
 
 namespace lodestone {
 
-// Turns and scales `mesh`, which still has the file's axes and units, and says in `info` what they were. `file_up` and
-// `file_unit_m` are what the format or the file states; `options` may overrule them.
-void to_lodestone_axes(Mesh& mesh, SourceInfo& info, UpAxis file_up, double file_unit_m, const ReadOptions& options);
+// What a reader returns: `mesh`, which still has the file's axes and units, turned and scaled, and what they were.
+// `file_up` and `file_unit_m` are what the format or the file states; `options` may overrule them.
+[[nodiscard]] LoadedMesh to_lodestone_axes(Mesh mesh, std::string format, UpAxis file_up, double file_unit_m,
+                                           const ReadOptions& options);
 
 // Y up to Z up and back: a quarter turn about X, exact in every bit.
 template <class Vector>

@@ -186,10 +186,7 @@ Result<LoadedMesh> CityBuilder::finish(std::string format, const Context& contex
   if (std::all_of(uvs.begin(), uvs.end(), [](const glm::vec2& uv) { return uv == glm::vec2{0.0F}; })) {
     mesh_.vertices.uvs.clear();
   }
-  LoadedMesh loaded{std::move(mesh_), {}};
-  loaded.info.format = std::move(format);
-  to_lodestone_axes(loaded.mesh, loaded.info, UpAxis::Z, 1.0, options_);
-  return Result<LoadedMesh>{std::move(loaded), warnings_.take()};
+  return {to_lodestone_axes(std::move(mesh_), std::move(format), UpAxis::Z, 1.0, options_), warnings_.take()};
 }
 
 std::string epsg_name(std::string_view srs_name) {

@@ -291,10 +291,8 @@ Result<LoadedMesh> SceneReader::read() {
   }
   if (mesh_.features.empty()) mesh_.face_features.clear();
   if ((scene_.mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) warnings_.add("the file was not read completely");
-  LoadedMesh loaded;
-  loaded.mesh = std::move(mesh_);
-  loaded.info.format = input_.extension().empty() ? "assimp" : input_.extension().substr(1);
-  to_lodestone_axes(loaded.mesh, loaded.info, up_axis(), unit_m(), options_);
+  const std::string format = input_.extension().empty() ? "assimp" : input_.extension().substr(1);
+  LoadedMesh loaded = to_lodestone_axes(std::move(mesh_), format, up_axis(), unit_m(), options_);
   if (options_.up == UpAxis::FromFile && was_z_up(input_.extension())) loaded.info.up_axis = "Z";
   return {std::move(loaded), warnings_.take()};
 }

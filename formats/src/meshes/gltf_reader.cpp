@@ -404,11 +404,7 @@ Result<LoadedMesh> GltfReader::read() {
   }
   remove_unused(mesh_);
   if (split_) merge_identical_vertices(mesh_);
-  LoadedMesh loaded;
-  loaded.mesh = std::move(mesh_);
-  loaded.info.format = "gltf";
-  to_lodestone_axes(loaded.mesh, loaded.info, UpAxis::Y, 1.0, options_);
-  return {std::move(loaded), warnings_.take()};
+  return {to_lodestone_axes(std::move(mesh_), "gltf", UpAxis::Y, 1.0, options_), warnings_.take()};
 }
 
 }  // namespace

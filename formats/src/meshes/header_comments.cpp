@@ -40,6 +40,11 @@ void HeaderComments::read(std::string_view comment) {
   if (contains(text, "z up") || contains(text, "z-up")) up = UpAxis::Z;
 }
 
+void HeaderComments::place(Mesh& mesh, const glm::dvec3& at) const {
+  mesh.origin = at + offset.value_or(glm::dvec3{0.0});
+  mesh.crs = crs;
+}
+
 std::string place_comments(const Mesh& mesh, std::string_view prefix) {
   std::string text = std::string{prefix} + "Z up, metres\n";
   if (mesh.origin != glm::dvec3{0.0}) {

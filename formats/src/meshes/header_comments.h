@@ -17,6 +17,8 @@ struct HeaderComments {
   UpAxis up = UpAxis::Z;             // "Y up", "Z-up"
 
   void read(std::string_view comment);
+  // Puts a mesh whose vertices are relative to `at` in the file's coordinates where it stands in the world.
+  void place(Mesh& mesh, const glm::dvec3& at) const;
 };
 
 // The comments that make HeaderComments::read find a mesh's place again, one a line, each after `prefix`.

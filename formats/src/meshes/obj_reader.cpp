@@ -389,13 +389,8 @@ Result<LoadedMesh> ObjReader::finish() {
         pool_.colors, out.colors, [](const WedgeKey& k) { return k.position; }, glm::u8vec4{255});
   }
   finish_materials();
-  mesh_.origin = origin_ + header_.offset.value_or(glm::dvec3{0.0});
-  mesh_.crs = header_.crs;
-  LoadedMesh loaded;
-  loaded.mesh = std::move(mesh_);
-  loaded.info.format = "obj";
-  to_lodestone_axes(loaded.mesh, loaded.info, header_.up, 1.0, options_);
-  return {std::move(loaded), warnings_.take()};
+  header_.place(mesh_, origin_);
+  return {to_lodestone_axes(std::move(mesh_), "obj", header_.up, 1.0, options_), warnings_.take()};
 }
 
 }  // namespace

@@ -504,13 +504,8 @@ Result<LoadedMesh> PlyReader::finish() {
     merge_identical_vertices(mesh_);
   }
   add_materials();
-  mesh_.origin = origin + comments.offset.value_or(glm::dvec3{0.0});
-  mesh_.crs = comments.crs;
-  LoadedMesh loaded;
-  loaded.mesh = std::move(mesh_);
-  loaded.info.format = "ply";
-  to_lodestone_axes(loaded.mesh, loaded.info, comments.up, 1.0, options_);
-  return {std::move(loaded), warnings_.take()};
+  comments.place(mesh_, origin);
+  return {to_lodestone_axes(std::move(mesh_), "ply", comments.up, 1.0, options_), warnings_.take()};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "blocks.h"
 #include "shapes.h"
+#include "small_house.h"
 
 namespace lodestone {
 namespace {
@@ -61,20 +62,15 @@ TEST_CASE("the block stands on the outline of the walls, as high as half of the 
 TEST_CASE("houses of every roof end as a block, told by name, within the claimed error") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
-    HouseOptions options;
-    options.triangles = 4000;
-    options.roof = roof;
-    options.pixels = Pixels::Skip;
-    const auto house = generate_house(options);
-    REQUIRE(house.ok());
-    const auto built = build_by_facet_shift(*house);
+    const Mesh house = test::small_house(4000, roof);
+    const auto built = build_by_facet_shift(house);
     REQUIRE(built.ok());
     CHECK(built->report.reached_block);
     CHECK(built->report.block_sentence.empty());
     const ProgressiveModel& model = *built->model;
     const Mesh block = model.extract(model.level_of_name("block").value());
     test::check_block(block);
-    const auto distance = compare(*house, block, {.samples = 5000});
+    const auto distance = compare(house, block, {.samples = 5000});
     REQUIRE(distance.ok());
     CHECK(distance->hausdorff_m <= model.error_m(0) + 1e-3);
     CHECK(model.level_of_name("lod3").value() >= model.level_of_name("lod2").value());

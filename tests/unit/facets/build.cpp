@@ -8,6 +8,7 @@
 
 #include "crossings.h"
 #include "shapes.h"
+#include "small_house.h"
 #include "walls.h"
 
 namespace lodestone {
@@ -54,21 +55,16 @@ TEST_CASE("every family of meshes builds, exact and monotone") {
 TEST_CASE("houses of every roof keep their planes and stay closed") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
-    HouseOptions options;
-    options.triangles = 10'000;
-    options.roof = roof;
-    options.pixels = Pixels::Skip;
-    const auto house = generate_house(options);
-    REQUIRE(house.ok());
-    const auto built = build_by_facet_shift(*house);
+    const Mesh house = test::small_house(10'000, roof);
+    const auto built = build_by_facet_shift(house);
     REQUIRE(built.ok());
-    check_model(*built->model, *house);
+    check_model(*built->model, house);
     for (const double ratio : {0.5, 0.2, 0.1, 0.05}) {
-      const auto wanted = static_cast<std::uint32_t>(ratio * house->triangle_count());
+      const auto wanted = static_cast<std::uint32_t>(ratio * house.triangle_count());
       const Mesh level = built->model->extract(built->model->level_of_triangles(wanted));
       CAPTURE(ratio);
       CHECK(inspect(level).boundary_edges == 0);
-      CHECK(normal_deviation_rad(*house, level) < glm::radians(ratio < 0.1 ? 0.7 : 0.1));
+      CHECK(normal_deviation_rad(house, level) < glm::radians(ratio < 0.1 ? 0.7 : 0.1));
     }
   }
 }
@@ -76,15 +72,10 @@ TEST_CASE("houses of every roof keep their planes and stay closed") {
 TEST_CASE("closed houses stay closed and pass through themselves nowhere where they did not from the start") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
-    HouseOptions options;
-    options.triangles = 2000;
-    options.roof = roof;
-    options.pixels = Pixels::Skip;
-    const auto house = generate_house(options);
-    REQUIRE(house.ok());
+    const Mesh house = test::small_house(2000, roof);
     // A finial stands in its roof from the start.
-    const std::uint32_t from_the_start = test::count_crossings(*house);
-    const auto built = build_by_facet_shift(*house);
+    const std::uint32_t from_the_start = test::count_crossings(house);
+    const auto built = build_by_facet_shift(house);
     REQUIRE(built.ok());
     constexpr std::uint32_t steps = 20;
     for (std::uint32_t i = 0; i <= steps; ++i) {
@@ -135,17 +126,8 @@ TEST_CASE("points within the tolerance move as one, and the finest level keeps t
   CHECK(welded->model->error_m(welded->model->record_count() - 1) >= 0.002);
 }
 
-Mesh small_house() {
-  HouseOptions options;
-  options.triangles = 3000;
-  options.pixels = Pixels::Skip;
-  auto house = generate_house(options);
-  REQUIRE(house.ok());
-  return std::move(*house);
-}
-
 TEST_CASE("together, the windows of a facade are one record, and the model ends as before") {
-  const Mesh house = small_house();
+  const Mesh house = test::small_house(3000);
   const auto single = build_by_facet_shift(house);
   const auto joined = build_by_facet_shift(house, {.order = ShiftOrder::Together});
   REQUIRE((single.ok() && joined.ok()));
@@ -158,7 +140,7 @@ TEST_CASE("together, the windows of a facade are one record, and the model ends 
 }
 
 TEST_CASE("rooms that cannot be seen go first, at no error, and nothing else does") {
-  Mesh house = small_house();
+  Mesh house = test::small_house(3000);
   const std::uint32_t outside = house.triangle_count();
   const auto room_feature = static_cast<FeatureId>(house.features.size());
   house.features.push_back({"room", "Room", none});

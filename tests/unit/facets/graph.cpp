@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "shapes.h"
+#include "small_house.h"
 #include "walls.h"
 
 namespace lodestone {
@@ -46,13 +47,8 @@ TEST_CASE("walls are flat, uneven on one side or uneven on both") {
 
 TEST_CASE("roofs are told apart: flat, sloped, and the spire of a tower") {
   const auto roofs_of = [](Roof roof) {
-    HouseOptions options;
-    options.triangles = 3000;
-    options.roof = roof;
-    options.pixels = Pixels::Skip;
-    const auto house = generate_house(options);
-    REQUIRE(house.ok());
-    return facet_graph(*house).roofs;
+    const Mesh house = test::small_house(3000, roof);
+    return facet_graph(house).roofs;
   };
   CHECK(roofs_of(Roof::Flat).front().type == RoofType::Flat);
   for (const Roof roof : {Roof::Gable, Roof::Hip}) {
@@ -66,12 +62,8 @@ TEST_CASE("roofs are told apart: flat, sloped, and the spire of a tower") {
 }
 
 TEST_CASE("families partition the larger surfaces, and the datum is their largest") {
-  HouseOptions options;
-  options.triangles = 3000;
-  options.pixels = Pixels::Skip;
-  const auto house = generate_house(options);
-  REQUIRE(house.ok());
-  const FacetGraph graph = facet_graph(*house);
+  const Mesh house = test::small_house(3000);
+  const FacetGraph graph = facet_graph(house);
   std::vector<std::uint32_t> times(graph.surfaces.surfaces.size(), 0);
   for (const FacetFamily& family : graph.families) {
     REQUIRE(family.surfaces.size() == family.distance_m.size());

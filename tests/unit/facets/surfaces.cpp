@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "shapes.h"
+#include "small_house.h"
 
 namespace lodestone {
 namespace {
@@ -28,19 +29,15 @@ TEST_CASE("a cube has six surfaces: four walls, a roof and a ground") {
 }
 
 TEST_CASE("every face lies in the plane of its surface within the tolerance") {
-  HouseOptions options;
-  options.triangles = 3000;
-  options.pixels = Pixels::Skip;
-  const auto house = generate_house(options);
-  REQUIRE(house.ok());
+  const Mesh house = test::small_house(3000);
   const SurfaceTolerance tolerance;
-  const CharacteristicSurfaces found = characteristic_surfaces(*house, tolerance);
-  REQUIRE(found.surface_of_face.size() == house->triangle_count());
+  const CharacteristicSurfaces found = characteristic_surfaces(house, tolerance);
+  REQUIRE(found.surface_of_face.size() == house.triangle_count());
   double farthest = 0.0;
-  for (std::size_t c = 0; c < house->indices.size(); ++c) {
+  for (std::size_t c = 0; c < house.indices.size(); ++c) {
     const std::uint32_t s = found.surface_of_face[c / 3];
     if (s == none) continue;
-    const glm::dvec3 p{house->vertices.positions[house->indices[c]]};
+    const glm::dvec3 p{house.vertices.positions[house.indices[c]]};
     farthest = std::max(farthest, std::abs(glm::dot(found.surfaces[s].normal, p) - found.surfaces[s].offset_m));
   }
   CHECK(farthest <= tolerance.offset_m);
@@ -61,12 +58,8 @@ TEST_CASE("semantic classes go before directions") {
 }
 
 TEST_CASE("houses are planar, spheres and terrain are not") {
-  HouseOptions options;
-  options.triangles = 3000;
-  options.pixels = Pixels::Skip;
-  const auto house = generate_house(options);
-  REQUIRE(house.ok());
-  CHECK(planar_area_share(*house, 1e-3) > 0.8);
+  const Mesh house = test::small_house(3000);
+  CHECK(planar_area_share(house, 1e-3) > 0.8);
   CHECK(planar_area_share(test::sphere(60, 80), 1e-3) < 0.2);
 }
 
