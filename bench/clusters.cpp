@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -90,6 +91,38 @@ void print_errors(const ClusterGraph& graph, const Mesh& source) {
                 first ? "" : ", ", static_cast<unsigned long long>(extract(graph, cut).triangle_count()), level.error_m,
                 found->p999_m, found->hausdorff_m, found->rms_m);
     first = false;
+  }
+}
+
+// How many points each round could not move because two groups use them, and how many of those could not the round
+// before either.
+void print_locked(const ClusterGraph& graph) {
+  const std::vector<GroupId> group_of = groups_of_nodes(graph.graph);
+  using Use = std::pair<std::array<float, 3>, GroupId>;
+  std::vector<std::array<float, 3>> before;
+  for (std::uint32_t level = 0; level < graph.levels.size(); ++level) {
+    std::vector<Use> uses;
+    for (NodeId n = 0; n < graph.clusters.size(); ++n) {
+      if (graph.clusters[n].level != level) continue;
+      for (std::uint32_t v = graph.clusters[n].vertices.begin; v != graph.clusters[n].vertices.end; ++v) {
+        const glm::vec3& p = graph.vertices.positions[v];
+        uses.push_back({{p.x, p.y, p.z}, group_of[n]});
+      }
+    }
+    std::sort(uses.begin(), uses.end());
+    uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
+    std::size_t points = 0;
+    std::vector<std::array<float, 3>> locked;
+    for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
+      while (end < uses.size() && uses[end].first == uses[i].first) ++end;
+      ++points;
+      if (end > i + 1) locked.push_back(uses[i].first);
+    }
+    std::size_t again = 0;
+    for (const auto& p : locked) again += std::binary_search(before.begin(), before.end(), p) ? 1 : 0;
+    std::printf("%s{\"points\": %zu, \"locked\": %zu, \"locked_before\": %zu}", level == 0 ? "" : ", ", points,
+                locked.size(), again);
+    before = std::move(locked);
   }
 }
 
@@ -175,6 +208,8 @@ int main(int argc, char** argv) {
                 &level == graph->levels.data() ? "" : ", ", level.clusters, level.groups,
                 static_cast<unsigned long long>(level.triangles), level.mean_fill, level.error_m);
   }
+  std::printf("], \"locked\": [");
+  print_locked(*graph);
   std::printf("], \"selection\": [");
   print_selection(*graph);
   std::printf("], \"errors\": [");

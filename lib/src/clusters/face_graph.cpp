@@ -28,7 +28,7 @@ std::vector<EdgeOfFace> sorted_edges(std::span<const std::array<std::uint32_t, 3
   const auto for_each_edge = [&](auto&& visit) {
     for (std::uint32_t f = 0; f < faces.size(); ++f) {
       const auto& p = faces[f];
-      if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
+      if (is_collapsed(p)) continue;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t q = p[k == 2 ? 0 : k + 1];
         visit(EdgeOfFace{std::min(p[k], q), std::max(p[k], q), f});

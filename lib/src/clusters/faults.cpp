@@ -72,7 +72,7 @@ InnerEdges inner_edges(const ClusterGraph& graph, const Weld& weld, const std::v
   for (const NodeId n : nodes) add_faces(graph, weld, n, faces);
   std::vector<Edge> uses;
   for (const auto& p : faces) {
-    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
+    if (clusters::is_collapsed(p)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t q = p[(k + 1) % 3];
       if (border[p[k]] == 0 || border[q] == 0) uses.emplace_back(std::min(p[k], q), std::max(p[k], q));

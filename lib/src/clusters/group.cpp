@@ -55,10 +55,11 @@ class Grouper {
       for (const std::uint32_t p : points) owner[p] = owner[p] == none || owner[p] == c ? c : several;
     });
     for_each_face([&](const auto& points, std::uint32_t c) {
+      if (is_collapsed(points)) return;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t p = points[k];
         const std::uint32_t q = points[k == 2 ? 0 : k + 1];
-        if (p != q && owner[p] == several && owner[q] == several) edges_.push_back({std::min(p, q), std::max(p, q), c});
+        if (owner[p] == several && owner[q] == several) edges_.push_back({std::min(p, q), std::max(p, q), c});
       }
     });
     std::sort(edges_.begin(), edges_.end());

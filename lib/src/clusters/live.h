@@ -16,6 +16,11 @@ struct LiveFace {
   FaceId id = none;                  // of the source: material and feature
 };
 
+// A face between fewer than three points covers nothing and has no edges: the simplification drops it.
+[[nodiscard]] inline bool is_collapsed(const std::array<std::uint32_t, 3>& points) noexcept {
+  return points[0] == points[1] || points[1] == points[2] || points[2] == points[0];
+}
+
 struct LiveCluster {
   Range faces;
   std::uint32_t draft = none;  // which node draft it is

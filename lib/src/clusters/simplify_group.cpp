@@ -79,7 +79,7 @@ class Job {
   GroupResult run() {
     gather();
     choose_target();
-    for (const BorderEdge& e : group_.border) border_edges_.push_back(edge_between(e.low, e.high));
+    find_border_edges();
     for (int attempt = 0; attempt < attempts && !context_.cancelled(); ++attempt) {
       simplify();
       name_points();
@@ -132,6 +132,37 @@ class Job {
     for (const LiveFace& f : faces_) mesh_.face_materials.push_back(work_.source.face_materials[f.id]);
   }
 
+  // Those that one face of the group uses must stay so or be used by more; those that more faces use may not become
+  // such: each has a face on another side.
+  void find_border_edges() {
+    Edges edges;  // that may be of the border
+    for (const LiveFace& f : local_) {
+      if (is_collapsed(points_before(f))) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const VertexId a = f.vertex[k];
+        const VertexId b = f.vertex[(k + 1) % 3];
+        if (result_.locked[a] != 0 && result_.locked[b] != 0) {
+          edges.push_back(edge_between(point_before_[a], point_before_[b]));
+        }
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    for (const BorderEdge& e : group_.border) {
+      const std::uint64_t edge = edge_between(e.low, e.high);
+      border_edges_.push_back(edge);
+      if (uses(edges, edge) > 1) border_edges_within_.push_back(edge);
+    }
+  }
+
+  [[nodiscard]] std::array<std::uint32_t, 3> points_before(const LiveFace& f) const {
+    return {point_before_[f.vertex[0]], point_before_[f.vertex[1]], point_before_[f.vertex[2]]};
+  }
+
+  static std::ptrdiff_t uses(const Edges& edges, std::uint64_t edge) {
+    const auto [first, last] = std::equal_range(edges.begin(), edges.end(), edge);
+    return last - first;
+  }
+
   // Half the triangles, in clusters that are full.
   void choose_target() {
     const auto half = static_cast<std::uint32_t>(faces_.size() / 2);
@@ -180,8 +211,9 @@ class Job {
     Edges edges;
     edges.reserve(3 * faces.size());
     for (const LiveFace& f : faces) {
-      for (std::size_t k = 0; k < 3; ++k)
-        edges.push_back(edge_between(point[f.vertex[k]], point[f.vertex[(k + 1) % 3]]));
+      const std::array<std::uint32_t, 3> p{point[f.vertex[0]], point[f.vertex[1]], point[f.vertex[2]]};
+      if (is_collapsed(p)) continue;
+      for (std::size_t k = 0; k < 3; ++k) edges.push_back(edge_between(p[k], p[(k + 1) % 3]));
     }
     std::sort(edges.begin(), edges.end());
     return edges;
@@ -220,12 +252,11 @@ class Job {
     }
     const Edges edges = edges_of(result_.faces, result_.point);
     Edges faults = opened(edges, result_.point, border);
-    if (!faults.empty() &&
-        faults.size() <= opened(edges_of(local_, point_before_), point_before_, border_before_).size()) {
-      faults.clear();
-    }
     std::set_difference(border_edges_.begin(), border_edges_.end(), edges.begin(), edges.end(),
                         std::back_inserter(faults));
+    for (const std::uint64_t e : border_edges_within_) {
+      if (uses(edges, e) == 1) faults.push_back(e);
+    }
     return faults;
   }
 
@@ -409,6 +440,7 @@ class Job {
   std::vector<std::uint32_t> point_before_;  // per local vertex
   std::vector<std::uint8_t> border_before_;  // per local vertex
   Edges border_edges_;                       // ascending
+  Edges border_edges_within_;                // those that more than one face of the group uses
   VertexArrays start_;
   Mesh mesh_;
   EdgeCollapseOptions options_;

@@ -86,12 +86,19 @@ class Blocks {
   std::uint32_t cluster_faces_;
 };
 
+Pieces split_into(const std::vector<LiveFace>& faces, const Ground& ground, std::uint32_t parts,
+                  std::uint32_t max_triangles) {
+  const std::uint32_t mean = static_cast<std::uint32_t>(faces.size()) / parts;
+  Pieces out;
+  append(faces, ground, {parts, std::min(mean, max_triangles - max_triangles / 32), max_triangles}, out);
+  return out;
+}
+
 }  // namespace
 
 Pieces split(std::vector<LiveFace> faces, const Ground& ground, std::uint32_t max_triangles) {
-  Pieces out;
   const auto count = static_cast<std::uint32_t>(faces.size());
-  if (count == 0) return out;
+  if (count == 0) return {};
   // Where every face has vertices of its own, fewer fit.
   const double vertices_per_face = static_cast<double>(vertex_count(faces)) / count;
   const auto fitting = static_cast<std::uint32_t>(0.98 * max_cluster_vertices / vertices_per_face);
@@ -100,9 +107,14 @@ Pieces split(std::vector<LiveFace> faces, const Ground& ground, std::uint32_t ma
   std::uint32_t parts = (count + max_triangles - 1) / max_triangles;
   const std::uint32_t roomy = (count + max_triangles - 3) / (max_triangles - 2);
   if (roomy >= 16) parts = roomy;
-  const std::uint32_t mean = count / parts;
-  append(std::move(faces), ground, {parts, std::min(mean, max_triangles - max_triangles / 32), max_triangles}, out);
-  return out;
+  Pieces best = split_into(faces, ground, parts, max_triangles);
+  // Halves of clusters with too many vertices are half empty: one cluster more from the start may be better than many
+  // halves.
+  for (++parts; parts + 1 < best.clusters.size(); ++parts) {
+    Pieces other = split_into(faces, ground, parts, max_triangles);
+    if (other.clusters.size() < best.clusters.size()) best = std::move(other);
+  }
+  return best;
 }
 
 std::vector<Range> cut_blocks(std::vector<LiveFace>& faces, std::span<const glm::vec3> positions,

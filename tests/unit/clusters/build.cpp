@@ -31,11 +31,37 @@ Mesh partly_cut(Mesh mesh) {
   return mesh;
 }
 
+// Beside every fifth face one between its first two points, with a vertex of its own: it covers nothing.
+Mesh with_collapsed_faces(Mesh mesh) {
+  const std::uint32_t count = mesh.triangle_count();
+  for (FaceId f = 0; f < count; f += 5) {
+    const VertexId a = mesh.indices[3 * f];
+    const VertexId b = mesh.indices[3 * f + 1];
+    mesh.indices.insert(mesh.indices.end(), {a, b, mesh.vertices.size()});
+    mesh.vertices.positions.push_back(glm::vec3{mesh.vertices.positions[b]});
+    if (!mesh.vertices.normals.empty()) mesh.vertices.normals.push_back(glm::vec3{mesh.vertices.normals[b]});
+    if (!mesh.vertices.uvs.empty()) mesh.vertices.uvs.push_back(glm::vec2{mesh.vertices.uvs[b]});
+  }
+  return mesh;
+}
+
+// Every third face a second time, turned over.
+Mesh with_doubled_faces(Mesh mesh) {
+  const std::uint32_t count = mesh.triangle_count();
+  for (FaceId f = 0; f < count; f += 3) {
+    const std::array<VertexId, 3> v{mesh.indices[3 * f], mesh.indices[3 * f + 1], mesh.indices[3 * f + 2]};
+    mesh.indices.insert(mesh.indices.end(), {v[1], v[0], v[2]});
+  }
+  return mesh;
+}
+
 std::vector<NamedMesh> models() {
   return {{"closed", sphere(40, 60)},
           {"bordered with uv", grid(70, 70)},
           {"seams and two materials", seamed_grid(60, 60)},
           {"a third of the faces cut loose", partly_cut(grid(60, 60))},
+          {"faces between two points", with_collapsed_faces(grid(50, 50))},
+          {"faces twice", with_doubled_faces(sphere(40, 60))},
           {"unwelded", unwelded(sphere(30, 40))},
           {"many parts", scattered_cubes(300, 1)}};
 }
