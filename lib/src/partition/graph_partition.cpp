@@ -72,7 +72,8 @@ class Partition {
         part_(first_part_.size(), 0),
         place_(first_part_.size(), 0) {}
 
-  void cut(WeightedGraph graph, const std::vector<std::uint32_t>& vertices, std::uint32_t parts, std::uint32_t first) {
+  void cut(const WeightedGraph& graph, const std::vector<std::uint32_t>& vertices, std::uint32_t parts,
+           std::uint32_t first) {
     if (parts == 1) {
       for (const std::uint32_t v : vertices) part_[v] = first;
       return;
@@ -81,8 +82,8 @@ class Partition {
     const std::vector<std::int32_t> side = bisect(graph, vertices, parts, first + left);
     for (std::int32_t s = 0; s < 2; ++s) {
       std::vector<std::uint32_t> inside;
-      WeightedGraph half = part_of(graph, side, s, vertices, inside);
-      cut(std::move(half), inside, s == 0 ? left : parts - left, s == 0 ? first : first + left);
+      const WeightedGraph half = part_of(graph, side, s, vertices, inside);
+      cut(half, inside, s == 0 ? left : parts - left, s == 0 ? first : first + left);
     }
   }
 
