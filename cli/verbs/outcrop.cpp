@@ -63,7 +63,7 @@ TilesetOptions Outcrop::options() const {
   if (image_ == "png") options.image = TileImage::Png;
   if (image_ == "webp") options.image = TileImage::Webp;
   if (compression_ == "meshopt") options.compression = TileCompression::Meshopt;
-  if (version_ == "1.0") options.version = TilesVersion::V1_0;
+  if (version_ == "1.0") options.version = TilesVersion::V10;
   options.jpeg_quality = static_cast<int>(quality_);
   options.resume = resume_;
   return options;

@@ -22,6 +22,7 @@ std::filesystem::path find_program(const std::string& name, const std::string& i
 
 std::optional<Ended> run_to_end(std::vector<std::string> command) {
   std::vector<char*> words;
+  words.reserve(command.size() + 1);
   for (std::string& word : command) words.push_back(word.data());
   words.push_back(nullptr);
   int channel[2];

@@ -40,8 +40,8 @@ enum class TileCompression : std::uint8_t {
 };
 
 enum class TilesVersion : std::uint8_t {
-  V1_1,  ///< glb
-  V1_0,  ///< b3dm, for older clients
+  V11,  ///< glb
+  V10,  ///< b3dm, for older clients
 };
 
 struct TilesetOptions {
@@ -49,7 +49,7 @@ struct TilesetOptions {
   TileImage image = TileImage::Jpeg;
   int jpeg_quality = 90;  ///< 1..100, of WebP as well; JPEG from 90 on does not subsample colours
   TileCompression compression = TileCompression::None;
-  TilesVersion version = TilesVersion::V1_1;
+  TilesVersion version = TilesVersion::V11;
   /// Goes on with a build of the same input and options that was stopped at any point; tiles that are there are kept.
   /// The folder comes out the same, byte for byte.
   bool resume = false;

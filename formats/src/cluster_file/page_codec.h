@@ -21,11 +21,11 @@ enum Column : std::size_t {
   UvX = NormalX + 2,
   Color = UvX + 2,
   Target,
-  column_count
+  ColumnCount
 };
 
-using WrittenColumns = std::array<model_file::ColumnWriter, column_count>;
-using ReadColumns = std::array<model_file::ColumnReader, column_count>;
+using WrittenColumns = std::array<model_file::ColumnWriter, ColumnCount>;
+using ReadColumns = std::array<model_file::ColumnReader, ColumnCount>;
 
 // The integers of a vertex.
 struct Words {

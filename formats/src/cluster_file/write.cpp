@@ -17,7 +17,7 @@ using namespace cluster_file;
 
 // A page is closed before it could outgrow its limit by one more cluster of the largest size.
 constexpr std::size_t largest_cluster_bytes = 255 * (3 * 4 + 2 * 2 + 2 * 4 + 4 + 4) + 255 * 4 * 3;
-constexpr std::size_t open_page_bytes = max_page_bytes - largest_cluster_bytes - 16 * column_count;
+constexpr std::size_t open_page_bytes = max_page_bytes - largest_cluster_bytes - 16 * ColumnCount;
 
 // Never inlined: g++ 12 at -O3 leaves out a rounding to float where it can see that the float becomes a double again
 // (x and y of glm::dvec3{glm::vec3{v}}), and spheres then miss what they enclose by a rounding.

@@ -105,7 +105,7 @@ std::vector<std::uint8_t> with_json(const std::vector<std::uint8_t>& file, std::
   return changed;
 }
 
-std::string first_line(std::string text) { return text.substr(0, std::min(text.find('\n'), std::size_t{200})); }
+std::string first_line(const std::string& text) { return text.substr(0, std::min(text.find('\n'), std::size_t{200})); }
 
 // The first extension that the file cannot be read without and that is not known here.
 const std::string* unknown_extension(const tinygltf::Model& model) {

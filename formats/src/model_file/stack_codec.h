@@ -45,9 +45,9 @@ enum Column : std::uint32_t {
   EditMoved,
   EditEscape,  // what the vocabulary lacks
   EditSame,
-  column_count,
+  ColumnCount,
 };
-static_assert(column_count == 53);
+static_assert(ColumnCount == 53);
 
 enum class NameMode : std::uint32_t {
   Run = 0,     // a run of the ring around the split vertex
@@ -55,8 +55,8 @@ enum class NameMode : std::uint32_t {
   Number = 2,  // corner numbers: the vertex has no list
 };
 
-using WrittenColumns = std::array<ColumnWriter, column_count>;
-using ReadColumns = std::array<ColumnReader, column_count>;
+using WrittenColumns = std::array<ColumnWriter, ColumnCount>;
+using ReadColumns = std::array<ColumnReader, ColumnCount>;
 
 // Writes the base, then blocks of records in order. `data` must be that of a valid model.
 class StackWriter {

@@ -30,7 +30,7 @@ std::string tile_name(const OutcropPyramid& pyramid, std::uint32_t tile, TilesVe
   std::uint32_t first = 0;
   for (std::uint32_t l = 0; l < level; ++l) first += pyramid.levels()[l].tiles;
   return "tiles/L" + std::to_string(level) + '_' + std::to_string(tile - first) +
-         (version == TilesVersion::V1_1 ? ".glb" : ".b3dm");
+         (version == TilesVersion::V11 ? ".glb" : ".b3dm");
 }
 
 Status write_tileset_json(const OutcropPyramid& pyramid, const std::filesystem::path& file, TilesVersion version,
@@ -57,7 +57,7 @@ Status write_tileset_json(const OutcropPyramid& pyramid, const std::filesystem::
   // Below this error nothing at all would be drawn: it must not come before the outcrop is a few pixels large.
   const OutcropTile& top = pyramid.tiles().back();
   const double whole_m = std::max(top.bounds.diagonal_m(), 2.0 * top.error_m);
-  Json asset{{"version", version == TilesVersion::V1_1 ? "1.1" : "1.0"}, {"generator", "Lodestone"}};
+  Json asset{{"version", version == TilesVersion::V11 ? "1.1" : "1.0"}, {"generator", "Lodestone"}};
   if (!pyramid.crs().empty()) asset["extras"]["crs"] = pyramid.crs();
   asset["extras"]["origin"] = {pyramid.origin().x, pyramid.origin().y, pyramid.origin().z};
   // For check_tileset(): edges that may be open.

@@ -293,7 +293,7 @@ Status OutcropWriter::write_tile(std::uint32_t tile, std::span<const SegmentImag
   }
   const fs::path file = tile_file(tile);
   const GltfLevel only{&content.mesh, 0.0};
-  const bool plain = options_.version == TilesVersion::V1_1;
+  const bool plain = options_.version == TilesVersion::V11;
   const fs::path glb = plain ? file : folder_ / "work" / (file.stem().string() + ".glb");
   GltfStyle style{.look = GltfLook::Photograph};
   if (options_.compression == TileCompression::Meshopt) {

@@ -97,7 +97,7 @@ TEST_CASE("blocks with wrong contents and right checksums never crash") {
       const Bytes raw = raw_block(good, block);
       for (int i = 0; i < 400; ++i) {
         Bytes spoilt = raw;
-        const std::size_t table = i % 4 == 0 ? 0 : 8 * model_file::column_count;
+        const std::size_t table = i % 4 == 0 ? 0 : 8 * model_file::ColumnCount;
         const std::size_t changes = 1 + random() % 4;
         for (std::size_t c = 0; c < changes; ++c) {
           spoilt[table + random() % (spoilt.size() - table)] = static_cast<std::uint8_t>(random());

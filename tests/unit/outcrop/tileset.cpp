@@ -149,7 +149,7 @@ TEST_CASE("Older clients get batched models with the same content") {
   const fs::path b3dm = scratch_folder("tileset_b3dm");
   static_cast<void>(write(glb));
   TilesetOptions older = options();
-  older.version = TilesVersion::V1_0;
+  older.version = TilesVersion::V10;
   static_cast<void>(write(b3dm, older));
   const auto check = check_tileset(b3dm / "tileset.json");
   REQUIRE(check);
