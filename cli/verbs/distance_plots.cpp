@@ -82,6 +82,9 @@ render::Plot triangle_plot(const SwitchStudy& study, const ProgressiveModel& mod
     plot.curves.push_back(steps_of(study, study.alternatives[i], render::curve_color(2 + i)));
   }
   plot.curves.push_back(steps_of(study, study.design, render::curve_color(0)));
+  if (study.plan.switch_m != study.design.switch_m) {
+    plot.curves.push_back(steps_of(study, study.plan, render::curve_color(7)));
+  }
   plot.curves.push_back(steps_of(study, study.measured, glm::u8vec3{0}));
   Curve continuous{"continuous, half a pixel", Curve::Style::Line, render::curve_color(1), {}};
   for (int i = 0; i <= curve_steps; ++i) {

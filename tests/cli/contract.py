@@ -323,7 +323,10 @@ class Keys(Contract):
         self.assertEqual([side["name"] for side in found["sides"]], ["front", "left"])
         for plan in found["alternatives"]:
             self.assertGreaterEqual(plan["redundancy"], found["design"]["redundancy"])
-        self.assertLessEqual(max(found["measured"]["noticeable_ratio"]), 0.01)
+        self.assertLessEqual(max(found["noticeable_ratio"]), 0.01)
+        written = json.loads((folder / "plan.json").read_text())["levels"]
+        self.assertLessEqual({level["from_m"] for level in written[1:]}, set(found["switch_m"]))
+        self.assertLessEqual({level["triangles"] for level in written[1:]}, set(found["triangles"]))
         self.assertEqual(found["display"]["luminance_cd_m2"], 200)
         self.assertAlmostEqual(found["display"]["max_frequency_cpd"], 14.82, 2)
         self.assertEqual([need["distance_m"] for need in found["needed"]][0], found["first_m"])

@@ -37,16 +37,17 @@ Result<LevelCheck> LevelChecker::check(Level level, double distance_m) {
     // Of either: a level that grows beyond the outline of the source is seen there too.
     std::vector<std::uint8_t> object = fine.mask;
     for (std::size_t p = 0; p < object.size(); ++p) object[p] |= coarse->mask[p];
+    const auto count = static_cast<double>(std::count(object.begin(), object.end(), std::uint8_t{1}));
+    if (count == 0.0) continue;  // nothing is seen of either
     const auto seen = check_vision(fine.image, coarse->image, object, vision_);
     if (!seen) return seen.error();
-    const auto count = static_cast<double>(std::count(object.begin(), object.end(), std::uint8_t{1}));
     check.ssim += seen->ssim * count;
     check.noticeable_ratio += seen->noticeable_ratio * count;
     pixels += count;
   }
   stage_.set_level(model_->record_count());
-  check.ssim /= pixels;
-  check.noticeable_ratio /= pixels;
+  check.ssim = pixels > 0.0 ? check.ssim / pixels : 1.0;
+  check.noticeable_ratio = pixels > 0.0 ? check.noticeable_ratio / pixels : 0.0;
   checked_.emplace(std::pair{distance_m, level}, check);
   return check;
 }

@@ -219,9 +219,9 @@ class Canvas {
 }  // namespace
 
 glm::u8vec3 curve_color(std::size_t index) noexcept {
-  constexpr std::array<glm::u8vec3, 7> colors{
+  constexpr std::array<glm::u8vec3, 8> colors{
       glm::u8vec3{213, 94, 0},   glm::u8vec3{0, 114, 178}, glm::u8vec3{0, 158, 115}, glm::u8vec3{204, 121, 167},
-      glm::u8vec3{86, 180, 233}, glm::u8vec3{230, 159, 0}, glm::u8vec3{90, 90, 90}};
+      glm::u8vec3{86, 180, 233}, glm::u8vec3{230, 159, 0}, glm::u8vec3{90, 90, 90},  glm::u8vec3{128, 60, 160}};
   return colors[index % colors.size()];
 }
 

@@ -76,6 +76,7 @@ struct SwitchStudy {
   /// The plan with its levels refined one by one until no more than `noticeable_limit` of the pixels differ noticeably:
   /// equation 17 bounds how far a surface moves, not what becomes visible when a wall swallows a pane of another
   /// colour. Switches that save less than a twentieth of the triangles after that go beyond the last.
+  /// The plan to use.
   SwitchPlan measured;
   PlanCheck measured_check;
   /// The equal intervals with all their levels as fine as the cost of `measured` allows.

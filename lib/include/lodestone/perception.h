@@ -189,7 +189,8 @@ struct SwitchPlan {
 /// beyond d1 too.
 [[nodiscard]] double redundancy(const DetailFit& fit, const std::vector<double>& switch_m, double last_m);
 
-/// The plan of `levels` levels (level 0 not counted, 1..16) with the least redundancy: Nelder-Mead with restarts.
+/// The plan of `levels` levels (level 0 not counted, 1..16) with the least redundancy: Nelder-Mead with restarts. No
+/// switch lies beyond `last_m`; one at `last_m` has nothing to gain.
 [[nodiscard]] Result<SwitchPlan> design_switches(const DetailFit& fit, std::uint32_t levels, double last_m);
 
 /// The same by dynamic programming over a fine grid: slower, and independent of any start; to check the other.

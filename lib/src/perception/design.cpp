@@ -12,10 +12,11 @@ namespace {
 
 constexpr std::uint32_t max_levels = 16;
 
-// Switch distances from logarithms of the steps between them, so that any vector is in order.
-std::vector<double> from_steps(const std::vector<double>& log_steps) {
+// Switch distances from logarithms of the steps between them, so that any vector is in order. Where the range ends
+// before the last step, what is left has no room for a level.
+std::vector<double> from_steps(const std::vector<double>& log_steps, double last_m) {
   std::vector<double> switch_m{0.0};
-  for (const double s : log_steps) switch_m.push_back(switch_m.back() + std::exp(s));
+  for (const double s : log_steps) switch_m.push_back(std::min(last_m, switch_m.back() + std::exp(s)));
   return switch_m;
 }
 
@@ -56,7 +57,9 @@ Result<SwitchPlan> design_switches(const DetailFit& fit, std::uint32_t levels, d
   const std::size_t n = levels - 1;
   const std::vector<double> low(n, std::log(1e-6 * last_m));
   const std::vector<double> high(n, std::log(last_m));
-  const auto value = [&](const std::vector<double>& steps) { return redundancy(fit, from_steps(steps), last_m); };
+  const auto value = [&](const std::vector<double>& steps) {
+    return redundancy(fit, from_steps(steps, last_m), last_m);
+  };
   std::vector<double> best;
   // Restarts: geometric plans of different reach.
   for (const double reach : {0.003, 0.01, 0.03, 0.1, 0.3}) {
@@ -67,7 +70,7 @@ Result<SwitchPlan> design_switches(const DetailFit& fit, std::uint32_t levels, d
     for (int again = 0; again < 3; ++again) start = perception::minimise(value, start, low, high);
     if (best.empty() || value(start) < value(best)) best = start;
   }
-  return make_plan("minimum redundancy", fit, from_steps(best), last_m);
+  return make_plan("minimum redundancy", fit, from_steps(best, last_m), last_m);
 }
 
 SwitchPlan design_switches_by_grid(const DetailFit& fit, std::uint32_t levels, double last_m, std::uint32_t grid_size) {

@@ -25,7 +25,9 @@ class Sampler {
     const auto picture = render_(distance_m);
     if (!picture) return picture.error();
     const auto detail = visible_detail(*picture, vision_);
-    if (!detail) return detail.error();
+    if (!detail)
+      return Error{detail.error().code, "from " + std::to_string(distance_m) + " m: " + detail.error().message,
+                   detail.error().where};
     if (samples_.empty()) first_pixels_ = static_cast<double>(detail->object_pixels);
     const auto seen = static_cast<double>(detail->object_pixels - detail->imperceptible_pixels);
     samples_.push_back({distance_m, seen / first_pixels_, *detail});
@@ -81,7 +83,10 @@ Result<VisibleDetail> visible_detail(const ObjectPicture& picture, const VisionM
     if (perception::grey(picture.image, i) != seen->pixels[i]) ++detail.imperceptible_pixels;
   }
   if (detail.object_pixels == 0)
-    return bad("no pixel of the picture belongs to the object; is it behind the camera, too small or seen edge-on?");
+    return bad(
+        "no pixel of the picture belongs to the object: the screen is too small for it or the field of view too wide, "
+        "or "
+        "it lies behind the camera or edge-on");
   return detail;
 }
 

@@ -63,8 +63,11 @@ TEST_CASE("switches that stand badly settle where the model's levels save most, 
   const double before = plan.cost;
   settle_switches(plan, steep(), model(), first_m, last_m, focal_px);
   double least = before;
+  double least_of_400 = before;  // as many places as settling tries
   for (int k = 1; k < 4000; ++k) {
-    least = std::min(least, costed({0.0, first_m * std::expm1(std::log1p(last_m / first_m) * k / 4000)}).cost);
+    const double cost = costed({0.0, first_m * std::expm1(std::log1p(last_m / first_m) * k / 4000)}).cost;
+    least = std::min(least, cost);
+    if (k % 10 == 0) least_of_400 = std::min(least_of_400, cost);
   }
   REQUIRE(least < 0.7 * before);
   CHECK(plan.cost <= 1.01 * least);
@@ -72,6 +75,23 @@ TEST_CASE("switches that stand badly settle where the model's levels save most, 
   CHECK(plan.redundancy == Approx(redundancy(steep(), plan.switch_m, last_m)));
   CHECK(plan.name != "as designed");
   CHECK(plan.switch_m[0] == 0.0);
+
+  // A move must save a hundredth: one that saves 1.2 % is made, one that saves 0.8 % is not.
+  const auto dearer = [&](double share) {
+    for (int k = 1; k < 40'000; ++k) {
+      const SwitchPlan found = costed({0.0, designed_m + 0.05 * k});
+      const double saved = 1.0 - least_of_400 / found.cost;
+      if (saved >= share && saved < share + 0.002) return found;
+    }
+    FAIL("no such plan");
+    return plan;
+  };
+  for (const auto& [share, moves] : {std::pair{0.0105, true}, std::pair{0.0075, false}}) {
+    SwitchPlan near_best = dearer(share);
+    const SwitchPlan as_it_was = near_best;
+    settle_switches(near_best, steep(), model(), first_m, last_m, focal_px);
+    CHECK((near_best.switch_m != as_it_was.switch_m) == moves);
+  }
 
   // A plan that stands well already is left as it is.
   SwitchPlan again = plan;

@@ -62,6 +62,34 @@ TEST_CASE("the wavelet gives every picture back, of odd and even sizes") {
   }
 }
 
+TEST_CASE("the wavelet of a picture is that of the picture mirrored at its ends, as far as the picture goes") {
+  // The samples at the ends themselves are not repeated; the mirrored signal begins at an even place.
+  constexpr std::size_t before = 64;
+  for (const std::size_t count : {21U, 22U}) {
+    const auto signal = random_plane(count, 1, 7);
+    const std::size_t period = 2 * (count - 1);
+    std::vector<float> mirrored(before + count + 64 + count % 2);
+    for (std::size_t i = 0; i < mirrored.size(); ++i) {
+      const std::size_t at = (i + 64 * period - before) % period;
+      mirrored[i] = signal[std::min(at, period - at)];
+    }
+    for (const bool columns : {false, true}) {
+      const auto forward = [&](std::vector<float> plane) {
+        const std::size_t n = plane.size();
+        perception::wavelet_forward(plane, columns ? 1 : n, columns ? 1 : n, columns ? n : 1);
+        return plane;
+      };
+      const auto transformed = forward(signal);
+      const auto wanted = forward(mirrored);
+      const std::size_t low = (count + 1) / 2;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = i < low ? before / 2 + i : (mirrored.size() + 1) / 2 + before / 2 + i - low;
+        CHECK(transformed[i] == Approx(wanted[at]).margin(1e-3));
+      }
+    }
+  }
+}
+
 TEST_CASE("the wavelet puts what is smooth into the low band alone") {
   std::vector<float> plane(64 * 64);
   for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = 10.0F + 0.5F * static_cast<float>(i % 64);
