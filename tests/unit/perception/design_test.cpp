@@ -78,7 +78,7 @@ TEST_CASE("no switch lies beyond the last distance, however flat or steep the fi
   const auto one = [&](double low, double high) {
     return low * std::pow(high / low, static_cast<double>(random() % 1000) / 999.0);
   };
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 30; ++i) {
     DetailFit fit;
     fit.a = one(1e-3, 1.0);
     fit.c = i % 3 == 0 ? 0.0 : one(1e-3, 1.0);
