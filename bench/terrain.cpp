@@ -74,7 +74,7 @@ Tin make(const TileLattice& lattice, double tolerance_m, double step_m, TerrainM
   if (method == TerrainMethod::Greedy) {
     return greedy_insertion(lattice, chain, {.tolerance_m = tolerance_m, .step_m = step_m}).tin;
   }
-  const Tin fine = greedy_insertion(lattice, chain, {.tolerance_m = 0.75 * tolerance_m, .step_m = step_m}).tin;
+  const Tin fine = greedy_insertion(lattice, chain, {.tolerance_m = 0.9 * tolerance_m, .step_m = step_m}).tin;
   return collapse_edges(fine, lattice, {.limit_m = tolerance_m + 0.5 * step_m, .step_m = step_m});
 }
 

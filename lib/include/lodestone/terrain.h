@@ -128,8 +128,8 @@ enum class TerrainBorders {
 
 struct TerrainOptions {
   TerrainMethod method = TerrainMethod::Greedy;
-  /// Shared: the line is as fine as the finest of these zooms needs it, in steps of height of the coarsest, half of
-  /// which its error may exceed the tolerance by. At most six zooms apart. Where data is missing along a border it is
+  /// Shared: the line is as fine as the finest of these zooms needs it, and all of them have one step of height, so that
+  /// the tolerance holds as it does elsewhere. At most six zooms apart. Where data is missing along a border it is
   /// nested instead.
   TerrainBorders borders = TerrainBorders::Nested;
   std::uint32_t shared_from_zoom = none;  ///< none: as far up from shared_to_zoom as can be
@@ -221,7 +221,7 @@ class TerrainPyramid {
   [[nodiscard]] double height_step_m(std::uint32_t zoom) const { return zooms_[zoom].step_m; }
   /// Whether borders of this zoom are those of the zoom above, where there is data along them.
   [[nodiscard]] bool shares_borders_above(std::uint32_t zoom) const noexcept {
-    return shared_from_zoom_ != none && zoom > shared_from_zoom_ && zoom <= shared_to_zoom_;
+    return shares_borders(zoom) && zoom > shared_from_zoom_;
   }
   [[nodiscard]] const TerrainOptions& options() const noexcept { return options_; }
   /// Of all posts of the finest zoom and the options: tiles are the same where it is.
@@ -245,13 +245,15 @@ class TerrainPyramid {
   };
   TerrainPyramid() = default;
   [[nodiscard]] terrain::SharedBorderOptions shared_border_options() const;
+  [[nodiscard]] bool shares_borders(std::uint32_t zoom) const noexcept {
+    return shared_from_zoom_ != none && zoom >= shared_from_zoom_ && zoom <= shared_to_zoom_;
+  }
 
   const HeightSource* source_ = nullptr;
   TerrainOptions options_;
   std::vector<Zoom> zooms_;
   std::uint64_t fingerprint_ = 0;
   std::uint32_t shared_from_zoom_ = none, shared_to_zoom_ = none;  // none: borders are nested
-  double shared_step_m_ = 0.0;
   float polar_height_m_[2] = {};  // south, north; NaN: no data there
 
   friend class TerrainPlanner;

@@ -4,9 +4,9 @@
 // to the unit cube (section 4.4.1). Differs: begins with a greedy TIN finer than asked instead of all posts; the border
 // is a chain that never changes, so that the boundary term is 0; may stop by error, which is measured at every post
 // that a collapse touches. A triangle that is not counter-clockwise from above is refused, so there are no vertical
-// walls, and no edge between vertices that have one already. Costs are in buckets an eighth of a power of two wide
-// instead of a heap, and sums over a vertex's triangles are kept, of which only those are looked up again that a
-// collapse has moved.
+// walls, and no edge between vertices that have one already. Edges wait in the order of the least cost that a place on
+// the edge has, in buckets an eighth of a power of two wide; those that cannot keep the tolerance are left out. Sums
+// over a vertex's triangles are kept as seen from the vertex, where their linear parts vanish.
 #include "terrain/edge_collapse.h"
 
 #include <algorithm>
@@ -26,35 +26,36 @@ using Vertex = Tin::Vertex;
 constexpr std::uint32_t next_of(std::uint32_t edge) { return edge % 3 == 2 ? edge - 2 : edge + 1; }
 constexpr std::uint32_t prev_of(std::uint32_t edge) { return edge % 3 == 0 ? edge + 2 : edge - 1; }
 
-// Sums over triangles of n n', n d, d d, n and d, where n is a triangle's normal (twice its area long) and d its
-// distance from the origin along it: n'x - d is six times the volume between the triangle and x.
+// Over the triangles around a vertex, as seen from it: sums of n n' and of n, where n is a triangle's normal (twice its
+// area long). n'x is six times the volume between the triangle and x.
+struct Fan {
+  collapse::Symmetric3 nn;
+  glm::dvec3 n{0.0};
+
+  void add(const glm::dvec3& normal, double times = 1.0) {
+    nn.add_plane(normal, times);
+    n += times * normal;
+  }
+};
+
+// Sums over triangles of n n', n d, d d, n and d, where d is a triangle's distance from the origin along n.
 struct Volumes {
   collapse::Symmetric3 nn;
   glm::dvec3 nd{0.0}, n{0.0};
   double dd = 0, d = 0;
 
-  void add(const glm::dvec3& normal, double distance, double times = 1.0) {
-    nn.add_plane(normal, times);
-    nd += times * distance * normal;
-    n += times * normal;
-    dd += times * distance * distance;
-    d += times * distance;
-  }
-  void add(const Volumes& other) {
-    nn += other.nn;
-    nd += other.nd;
-    n += other.n;
-    dd += other.dd;
-    d += other.d;
-  }
-  // As seen from another origin.
-  [[nodiscard]] Volumes from(const glm::dvec3& origin) const {
-    Volumes moved = *this;
-    const glm::dvec3 turned = nn * origin;
-    moved.nd = nd - turned;
-    moved.dd = dd - 2.0 * glm::dot(nd, origin) + glm::dot(origin, turned);
-    moved.d = d - glm::dot(n, origin);
-    return moved;
+  // The triangles of two fans, each once, from half way between them; `along` leads from there to the first. Those that
+  // both have pass through the origin.
+  Volumes(const Fan& first, const Fan& second, const glm::dvec3& along, const std::array<glm::dvec3, 2>& common)
+      : nn{first.nn + second.nn}, n{first.n + second.n} {
+    const glm::dvec3 near = first.nn * along, far = second.nn * along;
+    nd = near - far;
+    dd = glm::dot(along, near + far);
+    d = glm::dot(along, first.n - second.n);
+    for (const glm::dvec3& normal : common) {
+      nn.add_plane(normal, -1.0);
+      n -= normal;
+    }
   }
   // Sum of squares at x.
   [[nodiscard]] double at(const glm::dvec3& x) const { return nn.form(x) - 2.0 * glm::dot(nd, x) + dd; }
@@ -100,6 +101,35 @@ class CostQueue {
   std::size_t lowest_ = std::size_t{1} << 11U;
 };
 
+// The same TIN with its triangles in strips from west to east, eight posts high, and its vertices in the order of their
+// use: what a collapse touches then lies close together in memory. That is worth a quarter of the time.
+Tin in_strips(const Tin& tin) {
+  constexpr int strip = 1024;
+  std::vector<std::uint64_t> order(tin.triangles.size() / 3);
+  for (std::size_t t = 0; t < order.size(); ++t) {
+    const Vertex& corner = tin.vertices[tin.triangles[3 * t]];
+    const auto key = static_cast<std::uint64_t>(corner.v / strip << 16 | corner.u);
+    order[t] = key << 32U | t;
+  }
+  std::sort(order.begin(), order.end());
+  Tin sorted;
+  sorted.vertices.reserve(tin.vertices.size());
+  sorted.triangles.reserve(tin.triangles.size());
+  std::vector<std::uint32_t> name(tin.vertices.size(), none);
+  for (const std::uint64_t key : order) {
+    const std::size_t first = 3 * (key & 0xffffffffU);
+    for (std::size_t k = first; k < first + 3; ++k) {
+      std::uint32_t& id = name[tin.triangles[k]];
+      if (id == none) {
+        id = static_cast<std::uint32_t>(sorted.vertices.size());
+        sorted.vertices.push_back(tin.vertices[tin.triangles[k]]);
+      }
+      sorted.triangles.push_back(id);
+    }
+  }
+  return sorted;
+}
+
 class TinCollapse {
  public:
   TinCollapse(const Tin& tin, const TileLattice& lattice, const CollapseOptions& options)
@@ -111,14 +141,16 @@ class TinCollapse {
     }
     base_m_ = low_m;
     range_m_ = std::max(high_m - low_m, options.step_m);
+    inverse_range_ = 1.0 / range_m_;
+    if (options.target_edges == 0) {
+      const double most_off = hopeless * options.limit_m * inverse_range_;
+      most_off2_ = most_off * most_off;
+    }
     versions_.assign(vertices_.size(), 0);
     fixed_.assign(vertices_.size(), 0);
     edge_of_.assign(vertices_.size(), none);
     link_twins();
     fix_posts();
-    normals_.resize(corners_.size() / 3);
-    distances_.resize(corners_.size() / 3);
-    for (std::uint32_t f = 0; f < normals_.size(); ++f) measure_face(f);
     sums_.resize(vertices_.size());
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
       if (fixed_[v] == 0) sum_up(v);
@@ -145,10 +177,13 @@ class TinCollapse {
   }
 
  private:
+  // Collapses that move the ground by so many times the limit on average are not tried: one in fifty would fit.
+  static constexpr double hopeless = 2.5;
+
   [[nodiscard]] bool reached() const { return options_.target_edges != 0 && edge_count_ <= options_.target_edges; }
   [[nodiscard]] glm::dvec3 scaled(const Vertex& v) const {
-    return {static_cast<double>(v.u) / quantized_max, static_cast<double>(v.v) / quantized_max,
-            (v.height_m - base_m_) / range_m_};
+    constexpr double unit = 1.0 / quantized_max;
+    return {v.u * unit, v.v * unit, (v.height_m - base_m_) * inverse_range_};
   }
 
   // Everything on an edge of one triangle stays: borders, rims of voids.
@@ -180,13 +215,6 @@ class TinCollapse {
     }
   }
 
-  void measure_face(std::uint32_t f) {
-    const glm::dvec3 p = scaled(vertices_[corners_[3 * f]]), q = scaled(vertices_[corners_[3 * f + 1]]),
-                     r = scaled(vertices_[corners_[3 * f + 2]]);
-    normals_[f] = glm::cross(q - p, r - p);
-    distances_[f] = glm::dot(normals_[f], p);
-  }
-
   // Calls visit(half edge) for those that begin at a vertex with triangles all around, counter-clockwise.
   template <class Visit>
   void around(std::uint32_t v, Visit visit) const {
@@ -199,44 +227,59 @@ class TinCollapse {
   }
 
   void sum_up(std::uint32_t v) {
-    Volumes sum;
-    around(v, [&](std::uint32_t e) { sum.add(normals_[e / 3], distances_[e / 3]); });
+    Fan sum;
+    const glm::dvec3 middle = scaled(vertices_[v]);
+    glm::dvec3 last = scaled(vertices_[corners_[next_of(edge_of_[v])]]) - middle;
+    around(v, [&](std::uint32_t e) {
+      const glm::dvec3 next = scaled(vertices_[corners_[prev_of(e)]]) - middle;
+      sum.add(glm::cross(last, next));
+      last = next;
+    });
     sums_[v] = sum;
   }
 
   struct Placed {
     glm::dvec3 place{0.0};  // scaled
-    double cost = 0.0;
+    double off2 = 0.0;      // how far old triangles are from it, upwards, squared: the mean by squared area
   };
-  // Where the squared volumes between old and new triangles are least, their sum being 0; or at the end that stays,
-  // with whose triangles there are none.
+  // Where the squared volumes between old and new triangles are least, their sum being 0.
   [[nodiscard]] Placed place(std::uint32_t edge) const {
     const std::uint32_t a = corners_[edge], b = corners_[next_of(edge)];
-    const glm::dvec3 pa = scaled(vertices_[a]), pb = scaled(vertices_[b]), middle = 0.5 * (pa + pb);
-    const auto cost_of = [&](const Volumes& volumes, const glm::dvec3& at) {
-      return std::max(0.0, options_.volume_weight * volumes.at(at) + options_.shape_weight * glm::dot(at, at));
+    const glm::dvec3 pa = scaled(vertices_[a]), pb = scaled(vertices_[b]), along = 0.5 * (pa - pb);
+    const auto across = [&](std::uint32_t e) {
+      return glm::cross(2.0 * along, scaled(vertices_[corners_[prev_of(e)]]) - pb);
     };
-    if (fixed_[a] != 0 || fixed_[b] != 0) {
-      const glm::dvec3& stays = fixed_[a] != 0 ? pa : pb;
-      return {stays, cost_of(sums_[fixed_[a] != 0 ? b : a].from(middle), stays - middle)};
-    }
-    Volumes volumes = sums_[a];
-    volumes.add(sums_[b]);
-    for (const std::uint32_t f : {edge / 3, twins_[edge] / 3}) volumes.add(normals_[f], distances_[f], -1.0);
-    volumes = volumes.from(middle);
+    const Volumes volumes{sums_[a], sums_[b], along, {-across(edge), across(twins_[edge])}};
     // The shape term draws towards the middle of the edge, which is the origin here.
     const double pull = options_.shape_weight + 1e-11 * volumes.nn.trace();
-    const double reach = glm::length(glm::dvec2{pb - pa});
     const auto best = volumes.least(options_.volume_weight, pull);
+    constexpr double farthest = 4.0;  // half edges
     glm::dvec3 at{0.0};
-    if (best && glm::length(glm::dvec2{*best}) <= 2.0 * reach) at = *best;
-    return {at + middle, cost_of(volumes, at)};
+    if (best && glm::length(glm::dvec2{*best}) <= farthest * glm::length(glm::dvec2{along})) at = *best;
+    return {at + 0.5 * (pa + pb), volumes.at(at) / volumes.nn.zz};
   }
 
+  // In the order of the least cost on the edge itself, which takes a tenth of the time of finding the best place beside
+  // it; that is looked for when the edge's turn comes. As few triangles are left.
   void push(std::uint32_t edge) {
     const std::uint32_t a = corners_[edge], b = corners_[next_of(edge)];
     if (fixed_[a] != 0 && fixed_[b] != 0) return;
-    queue_.push(place(edge).cost, {a, b, versions_[a], versions_[b]});
+    const glm::dvec3 along = scaled(vertices_[b]) - scaled(vertices_[a]);
+    double sum = 0.0, level = 0.0;
+    if (fixed_[a] != 0 || fixed_[b] != 0) {
+      const Fan& fan = sums_[fixed_[a] != 0 ? b : a];
+      sum = fan.nn.form(along);
+      level = fan.nn.zz;
+    } else {
+      // Where on the edge the sum is least: one end's triangles count by its squared distance, the other's likewise.
+      const double to_b = sums_[a].nn.form(along), to_a = sums_[b].nn.form(along);
+      if (to_a + to_b > 0.0) sum = to_a * to_b / (to_a + to_b);
+      level = sums_[a].nn.zz + sums_[b].nn.zz;
+    }
+    sum = std::max(0.0, sum);
+    if (sum > most_off2_ * level) return;
+    const double cost = options_.volume_weight * sum + 0.25 * options_.shape_weight * glm::dot(along, along);
+    queue_.push(cost, {a, b, versions_[a], versions_[b]});
   }
 
   [[nodiscard]] Vertex rounded(const glm::dvec3& at) const {
@@ -278,7 +321,9 @@ class TinCollapse {
 
   [[nodiscard]] std::optional<Vertex> choose(std::uint32_t edge, std::uint32_t stays) const {
     if (fixed_[stays] != 0) return fits(vertices_[stays]) ? std::optional{vertices_[stays]} : std::nullopt;
-    const Vertex best = rounded(place(edge).place);
+    const Placed placed = place(edge);
+    if (placed.off2 > most_off2_) return std::nullopt;
+    const Vertex best = rounded(placed.place);
     return fits(best) ? std::optional{best} : std::nullopt;
   }
 
@@ -302,7 +347,6 @@ class TinCollapse {
     ++versions_[goes];
     edge_count_ -= 3;
     edge_of_[stays] = moving_.front();
-    for (const std::uint32_t e : moving_) measure_face(e / 3);
     if (fixed_[stays] == 0) sum_up(stays);
     for (const std::uint32_t e : moving_) {
       if (fixed_[corners_[next_of(e)]] == 0) sum_up(corners_[next_of(e)]);
@@ -336,20 +380,20 @@ class TinCollapse {
   std::vector<std::uint32_t> edge_of_;  // per free vertex, a half edge that begins there
   std::vector<std::uint32_t> versions_;
   std::vector<std::uint8_t> fixed_;
-  std::vector<glm::dvec3> normals_;  // per face, scaled
-  std::vector<double> distances_;
-  std::vector<Volumes> sums_;  // per free vertex
+  std::vector<Fan> sums_;  // per free vertex, scaled
   std::vector<std::uint32_t> moving_;
   CostQueue queue_;
   std::size_t edge_count_ = 0;
   double base_m_ = 0.0;
   double range_m_ = 1.0;
+  double inverse_range_ = 1.0;
+  double most_off2_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
 
 Tin collapse_edges(const Tin& tin, const TileLattice& lattice, const CollapseOptions& options) {
-  return TinCollapse{tin, lattice, options}.run();
+  return TinCollapse{in_strips(tin), lattice, options}.run();
 }
 
 }  // namespace lodestone::terrain

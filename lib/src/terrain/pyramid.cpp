@@ -52,8 +52,9 @@ class TerrainPlanner {
     for (std::uint32_t z = max_zoom_; z > 0; --z) gather_parents(pyramid.zooms_[z].tiles, pyramid.zooms_[z - 1].tiles);
     add_roots(pyramid.zooms_.front().tiles);
     if (Status status = read_poles(pyramid); !status) return status.error();
-    for (std::uint32_t z = 0; z <= max_zoom_; ++z) choose_numbers(z, pyramid.zooms_[z]);
     if (Status status = choose_shared(pyramid); !status) return status.error();
+    for (std::uint32_t z = 0; z <= max_zoom_; ++z) choose_numbers(z, pyramid);
+    share_steps(pyramid);
     pyramid.fingerprint_ = fingerprint(pyramid);
     return pyramid;
   }
@@ -226,7 +227,8 @@ class TerrainPlanner {
     return static_cast<std::uint32_t>(std::clamp(power_of_two_up(cells), 1.0, 64.0));
   }
 
-  void choose_numbers(std::uint32_t zoom, TerrainPyramid::Zoom& numbers) const {
+  void choose_numbers(std::uint32_t zoom, TerrainPyramid& pyramid) const {
+    TerrainPyramid::Zoom& numbers = pyramid.zooms_[zoom];
     numbers.tolerance_m = tolerance_m(zoom);
     numbers.divisions = divisions(zoom, numbers.tolerance_m);
     double range_m = 0.0, farthest_m = 0.0;
@@ -240,7 +242,9 @@ class TerrainPlanner {
     // Vertices overshoot by up to 1/256 of a step between posts, and by rounding.
     constexpr double overshoot = 1.0 + 1.0 / 64.0, float_range = 1 << 22;
     const double least_m = std::max({range_m * overshoot / (quantized_max - 1), farthest_m / float_range, 0x1p-10});
-    numbers.step_m = std::max(power_of_two_up(least_m), power_of_two_down(numbers.tolerance_m / 32.0));
+    // What a shared border may be off by, the finest zoom that has it decides.
+    const double finest_m = pyramid.shares_borders(zoom) ? tolerance_m(pyramid.shared_to_zoom_) : numbers.tolerance_m;
+    numbers.step_m = std::max(power_of_two_up(least_m), power_of_two_down(finest_m / 32.0));
     const std::vector<std::uint32_t>& targets = options_.target_edges;
     numbers.target_edges = targets.empty() ? 0 : targets[std::min<std::size_t>(zoom, targets.size() - 1)];
   }
@@ -256,14 +260,22 @@ class TerrainPlanner {
     }
     pyramid.shared_from_zoom_ = from;
     pyramid.shared_to_zoom_ = to;
-    for (std::uint32_t z = from; z <= to; ++z) {
-      pyramid.shared_step_m_ = std::max(pyramid.shared_step_m_, pyramid.zooms_[z].step_m);
-    }
     return Done{};
   }
 
+  // Zooms that share borders have one step of height.
+  void share_steps(TerrainPyramid& pyramid) const {
+    double step_m = 0.0;
+    for (std::uint32_t z = 0; z <= max_zoom_; ++z) {
+      if (pyramid.shares_borders(z)) step_m = std::max(step_m, pyramid.zooms_[z].step_m);
+    }
+    for (std::uint32_t z = 0; z <= max_zoom_; ++z) {
+      if (pyramid.shares_borders(z)) pyramid.zooms_[z].step_m = step_m;
+    }
+  }
+
   [[nodiscard]] std::uint64_t fingerprint(const TerrainPyramid& pyramid) const {
-    constexpr std::uint64_t version = 3;  // of the tiles that this code makes
+    constexpr std::uint64_t version = 4;  // of the tiles that this code makes
     std::uint64_t hash = version;
     const auto add = [&](double number) { hash = hash_combine(hash, std::bit_cast<std::uint64_t>(number)); };
     for (const std::uint64_t posts : post_hashes_) hash = hash_combine(hash, posts);
@@ -307,7 +319,7 @@ terrain::SharedBorderOptions TerrainPyramid::shared_border_options() const {
   const Zoom& finest = zooms_[shared_to_zoom_];
   return {.from_zoom = shared_from_zoom_,
           .to_zoom = shared_to_zoom_,
-          .chain = {finest.tolerance_m, shared_step_m_, static_cast<int>(finest.divisions)},
+          .chain = {finest.tolerance_m, finest.step_m, static_cast<int>(finest.divisions)},
           .polar_height_m = {polar_height_m_[0], polar_height_m_[1]}};
 }
 

@@ -44,18 +44,10 @@ Status TileBuilder::read_posts() {
   return status;
 }
 
-bool TileBuilder::shares_borders() const {
-  return pyramid_.shared_from_zoom_ != none && id_.zoom >= pyramid_.shared_from_zoom_ &&
-         id_.zoom <= pyramid_.shared_to_zoom_;
-}
-
-// Corners are of shared and of other borders at once, so all have one step.
-double TileBuilder::border_step_m() const { return shares_borders() ? pyramid_.shared_step_m_ : zoom_.step_m; }
-
 // Chains are made of the posts as they are, so that neighbours agree on them whatever else happens to a tile.
 Status TileBuilder::plan_borders() {
-  const bool shared = shares_borders();
-  const ChainOptions options{zoom_.tolerance_m, border_step_m(), static_cast<int>(zoom_.divisions)};
+  const bool shared = pyramid_.shares_borders(id_.zoom);
+  const ChainOptions options{zoom_.tolerance_m, zoom_.step_m, static_cast<int>(zoom_.divisions)};
   for (const Side side : all_sides) {
     std::vector<Tin::Vertex> vertices;
     if (shared) {
@@ -96,7 +88,7 @@ void TileBuilder::fill_placeholder() {
   for (float& height_m : lattice_.heights()) {
     if (std::isnan(height_m)) height_m = 0.0F;
   }
-  for (const Post p : more) border_.push_back(border_vertex(lattice_, p, border_step_m()));
+  for (const Post p : more) border_.push_back(border_vertex(lattice_, p, zoom_.step_m));
 }
 
 std::vector<Post> TileBuilder::fixed_posts() const {
@@ -143,7 +135,7 @@ MeasuredTin TileBuilder::point_set(const std::vector<Post>& inside) const {
 // Begins with a TIN that is finer than asked: what it has too many of, collapsing removes from the best places.
 MeasuredTin TileBuilder::collapsed(GreedyOptions greedy) const {
   const TerrainOptions& options = pyramid_.options_;
-  constexpr double finer_by_error = 0.75, finer_by_count = 0.125;
+  constexpr double finer_by_error = 0.9, finer_by_count = 0.125;
   greedy.tolerance_m *= zoom_.target_edges == 0 ? finer_by_error : finer_by_count;
   const MeasuredTin fine = greedy_insertion(lattice_, border_, greedy);
   const double limit_m = zoom_.tolerance_m + 0.5 * zoom_.step_m;

@@ -19,8 +19,6 @@ class TileBuilder {
  private:
   [[nodiscard]] PostWindow window() const;
   [[nodiscard]] Status read_posts();
-  [[nodiscard]] bool shares_borders() const;
-  [[nodiscard]] double border_step_m() const;
   [[nodiscard]] Status plan_borders();
   void fill_placeholder();
   [[nodiscard]] std::vector<terrain::Post> fixed_posts() const;

@@ -237,7 +237,7 @@ TEST_CASE("shared borders are one line on all zooms: no gap between unequal zoom
   double most_gap_m = 0.0;
   std::size_t compared = 0;
   for (const auto& [key, tile] : tiles) {
-    CHECK(tile.max_error_m <= pyramid->tolerance_m(tile.id.zoom) + 0.5 * pyramid->height_step_m(0));
+    CHECK(tile.max_error_m <= pyramid->tolerance_m(tile.id.zoom) + 0.5 * pyramid->height_step_m(tile.id.zoom));
     const auto [zoom, y, x] = key;
     if (zoom == 0) continue;
     const TerrainTile& parent = tiles.at({zoom - 1, y / 2, x / 2});
