@@ -162,9 +162,11 @@ Status RasterFile::read_frame(const Handle& handle) {
   const double span_deg = static_cast<double>(frame_.width) * frame_.step_x_deg;
   const double tall_deg = static_cast<double>(frame_.height) * std::fabs(frame_.step_y_deg);
   const bool finite = std::isfinite(span_deg) && std::isfinite(tall_deg) && std::isfinite(t[0]) && std::isfinite(t[3]);
-  constexpr double slack = 1.01;
-  if (!finite || !(frame_.step_x_deg > 0.0) || frame_.step_y_deg == 0.0 || span_deg > 360.0 * slack ||
-      tall_deg > 180.0 * slack || std::fabs(t[0]) > 720.0 || std::fabs(t[3]) > 90.0 * slack) {
+  // Samples may lie on the poles, and on the antimeridian at both ends.
+  const double slack_x_deg = 1.5 * frame_.step_x_deg, slack_y_deg = 1.5 * std::fabs(frame_.step_y_deg);
+  if (!finite || !(frame_.step_x_deg > 0.0) || frame_.step_y_deg == 0.0 || frame_.step_x_deg > 360.0 ||
+      slack_y_deg > 180.0 || span_deg > 360.0 + slack_x_deg || tall_deg > 180.0 + slack_y_deg ||
+      std::fabs(t[0]) > 720.0 || std::fabs(t[3]) > 90.0 + slack_y_deg) {
     return Error{ErrorCode::BadData, "its coordinates are no degrees and it names no coordinate system",
                  file_.string()};
   }

@@ -16,22 +16,23 @@ namespace {
 
 constexpr const char* manifest_name = "lodestone-terrain.txt";
 constexpr const char* journal_name = "lodestone-terrain.unfinished";
-constexpr const char* title = "lodestone terrain 1";
+constexpr const char* title = "lodestone terrain 2";
 
 std::string line_of(const TileRecord& r) {
   char text[320];
-  const int length = std::snprintf(text, sizeof text,
-                                   "%u %u %u %" PRIu64 " %u %u %.17g %.17g %016" PRIx64 " %016" PRIx64 " %016" PRIx64
-                                   " %016" PRIx64 "\n",
-                                   r.id.zoom, r.id.x, r.id.y, r.bytes, r.vertices, r.triangles, r.max_error_m,
-                                   r.border_detail_m, r.borders[0], r.borders[1], r.borders[2], r.borders[3]);
+  const int length = std::snprintf(
+      text, sizeof text,
+      "%u %u %u %" PRIu64 " %u %u %.17g %.17g %.17g %016" PRIx64 " %016" PRIx64 " %016" PRIx64 " %016" PRIx64 "\n",
+      r.id.zoom, r.id.x, r.id.y, r.bytes, r.vertices, r.triangles, r.max_error_m, r.border_detail_m, r.hausdorff_m,
+      r.borders[0], r.borders[1], r.borders[2], r.borders[3]);
   return {text, static_cast<std::size_t>(length)};
 }
 
 bool parse(const std::string& line, TileRecord& r) {
-  return std::sscanf(line.c_str(), "%u %u %u %" SCNu64 " %u %u %lg %lg %" SCNx64 " %" SCNx64 " %" SCNx64 " %" SCNx64,
-                     &r.id.zoom, &r.id.x, &r.id.y, &r.bytes, &r.vertices, &r.triangles, &r.max_error_m,
-                     &r.border_detail_m, &r.borders[0], &r.borders[1], &r.borders[2], &r.borders[3]) == 12;
+  return std::sscanf(line.c_str(),
+                     "%u %u %u %" SCNu64 " %u %u %lg %lg %lg %" SCNx64 " %" SCNx64 " %" SCNx64 " %" SCNx64, &r.id.zoom,
+                     &r.id.x, &r.id.y, &r.bytes, &r.vertices, &r.triangles, &r.max_error_m, &r.border_detail_m,
+                     &r.hausdorff_m, &r.borders[0], &r.borders[1], &r.borders[2], &r.borders[3]) == 13;
 }
 
 std::string heading(std::uint64_t fingerprint) {
@@ -73,6 +74,7 @@ TileRecord record_of(const TerrainTile& tile, std::uint64_t bytes) {
           tile.triangle_count(),
           tile.max_error_m,
           tile.border_detail_m,
+          -1.0,
           {border_hash(tile, tile.west, tile.u, tile.v), border_hash(tile, tile.south, tile.v, tile.u),
            border_hash(tile, tile.east, tile.u, tile.v), border_hash(tile, tile.north, tile.v, tile.u)}};
 }

@@ -20,6 +20,7 @@ struct TileRecord {
   std::uint32_t triangles = 0;
   double max_error_m = 0.0;
   double border_detail_m = 0.0;
+  double hausdorff_m = -1.0;  // below 0: not measured, or a tile without data
   // Hashes of the vertices along the borders: west, south, east, north; 0 where triangles leave part of it free.
   std::array<std::uint64_t, 4> borders{};
 };

@@ -13,21 +13,49 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// So many zooms are in one file: tileset.json begins with zoom 0, 4/x/y.json with a tile of zoom 4, and so on. A file
+// lists 170 tiles and the files below them at most, whatever the pyramid's size.
+constexpr std::uint32_t zooms_a_file = 4;
+
 class TilesetWriter {
  public:
-  explicit TilesetWriter(const TerrainPyramid& pyramid) : pyramid_{pyramid} {}
+  TilesetWriter(const TerrainPyramid& pyramid, const std::filesystem::path& folder)
+      : pyramid_{pyramid}, folder_{folder} {}
 
-  [[nodiscard]] Json tileset() const {
-    Json root{{"boundingVolume", region({0, 0, 0}, 360.0)},
-              {"geometricError", 4.0 * pyramid_.tolerance_m(0)},
-              {"refine", "REPLACE"}};
-    for (std::uint32_t x = 0; x < 2; ++x) root["children"].push_back(tile({0, x, 0}));
-    return {{"asset", {{"version", "1.1"}, {"generator", "Lodestone"}}},
-            {"geometricError", 4.0 * pyramid_.tolerance_m(0)},
-            {"root", std::move(root)}};
+  [[nodiscard]] Status write() const {
+    if (Status status = write(tileset(), "tileset.json"); !status) return status;
+    for (std::uint32_t zoom = zooms_a_file; zoom <= pyramid_.max_zoom(); zoom += zooms_a_file) {
+      for (const TileInfo& info : pyramid_.tiles(zoom)) {
+        const TileId id{zoom, info.x, info.y};
+        const Json root = tile(id, id);
+        if (Status status = write(whole(root["geometricError"], root), name_of(id) + ".json"); !status) return status;
+      }
+    }
+    return Done{};
   }
 
  private:
+  [[nodiscard]] Status write(const Json& json, const std::string& name) const {
+    const std::string text = json.dump() + "\n";
+    return write_whole_file(folder_ / name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+  [[nodiscard]] static std::string name_of(const TileId& id) {
+    return std::to_string(id.zoom) + '/' + std::to_string(id.x) + '/' + std::to_string(id.y);
+  }
+  [[nodiscard]] static Json whole(const Json& error, Json root) {
+    root["refine"] = "REPLACE";
+    return {{"asset", {{"version", "1.1"}, {"generator", "Lodestone"}}},
+            {"geometricError", error},
+            {"root", std::move(root)}};
+  }
+
+  [[nodiscard]] Json tileset() const {
+    const double error_m = 4.0 * pyramid_.tolerance_m(0);
+    Json root{{"boundingVolume", region({0, 0, 0}, 360.0)}, {"geometricError", error_m}};
+    for (std::uint32_t x = 0; x < 2; ++x) root["children"].push_back(tile({0, x, 0}, {}));
+    return whole(error_m, std::move(root));
+  }
+
   [[nodiscard]] const TileInfo* find(const TileId& id) const {
     const std::vector<TileInfo>& tiles = pyramid_.tiles(id.zoom);
     const auto place = std::lower_bound(tiles.begin(), tiles.end(), id, [](const TileInfo& a, const TileId& b) {
@@ -56,29 +84,31 @@ class TilesetWriter {
               low_m - slack_m - skirt_depth_m(pyramid_, id.zoom), high_m + slack_m}}};
   }
 
-  [[nodiscard]] Json tile(const TileId& id) const {
-    const bool leaf = id.zoom == pyramid_.max_zoom();
-    Json json{{"boundingVolume", region(id, std::ldexp(180.0, -static_cast<int>(id.zoom)))},
-              {"geometricError", leaf ? 0.0 : pyramid_.tolerance_m(id.zoom)},
-              {"content",
-               {{"uri", std::to_string(id.zoom) + '/' + std::to_string(id.x) + '/' + std::to_string(id.y) + ".glb"}}}};
-    if (leaf) return json;
-    for (std::uint32_t k = 0; k < 4; ++k) {
+  // As the file says it that begins with `first`: tileset.json, or that of a tile of a finer zoom two folders down.
+  [[nodiscard]] Json tile(const TileId& id, const TileId& first) const {
+    const std::string up = first.zoom == 0 ? "" : "../../";
+    const bool elsewhere = id.zoom % zooms_a_file == 0 && id.zoom > 0 && !(id == first);
+    std::vector<TileId> children;
+    for (std::uint32_t k = 0; k < 4 && id.zoom < pyramid_.max_zoom(); ++k) {
       const TileId child{id.zoom + 1, 2 * id.x + k % 2, 2 * id.y + k / 2};
-      if (find(child) != nullptr) json["children"].push_back(tile(child));
+      if (find(child) != nullptr) children.push_back(child);
     }
-    if (!json.contains("children")) json["geometricError"] = 0.0;
+    Json json{{"boundingVolume", region(id, std::ldexp(180.0, -static_cast<int>(id.zoom)))},
+              {"geometricError", children.empty() ? 0.0 : pyramid_.tolerance_m(id.zoom)},
+              {"content", {{"uri", up + name_of(id) + (elsewhere ? ".json" : ".glb")}}}};
+    if (elsewhere) return json;
+    for (const TileId& child : children) json["children"].push_back(tile(child, first));
     return json;
   }
 
   const TerrainPyramid& pyramid_;
+  const std::filesystem::path& folder_;
 };
 
 }  // namespace
 
 Status write_tileset(const TerrainPyramid& pyramid, const std::filesystem::path& folder) {
-  const std::string text = TilesetWriter{pyramid}.tileset().dump() + "\n";
-  return write_whole_file(folder / "tileset.json", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return TilesetWriter{pyramid, folder}.write();
 }
 
 }  // namespace lodestone

@@ -34,8 +34,9 @@ class TerrainWriter {
 
   [[nodiscard]] Result<TerrainSummary> write() {
     // Both formats in one folder would share a manifest.
-    const std::uint64_t fingerprint =
-        pyramid_.fingerprint() + 2 * options_.metadata_zooms + (options_.format == TerrainFormat::Tiles3d ? 1 : 0);
+    const std::uint64_t fingerprint = pyramid_.fingerprint() + 4 * options_.metadata_zooms +
+                                      (options_.measure_hausdorff ? 2 : 0) +
+                                      (options_.format == TerrainFormat::Tiles3d ? 1 : 0);
     if (Status status = journal_.open(folder_, fingerprint, options_.resume); !status) return status.error();
     if (options_.resume) remove_leftovers();
     const std::vector<TileId> missing = missing_tiles();
@@ -114,7 +115,13 @@ class TerrainWriter {
       if (Status status = write_whole_file(file, bytes); !status) return status;
       size = bytes.size();
     }
-    return journal_.add(record_of(tile, size));
+    TileRecord record = record_of(tile, size);
+    if (options_.measure_hausdorff && !tile.placeholder) {
+      const auto distance_m = tile_hausdorff_m(pyramid_, tile);
+      if (!distance_m) return distance_m.error();
+      record.hausdorff_m = *distance_m;
+    }
+    return journal_.add(record);
   }
 
   [[nodiscard]] Status write_layer() const {
@@ -170,7 +177,8 @@ class TerrainWriter {
   [[nodiscard]] TerrainSummary summarise() const {
     TerrainSummary summary;
     summary.zooms.resize(pyramid_.max_zoom() + 1);
-    std::vector<double> detail_m(summary.zooms.size());
+    std::vector<double> detail_m(summary.zooms.size()), distance_m(summary.zooms.size());
+    std::vector<std::uint32_t> measured(summary.zooms.size());
     for (const auto& [key, record] : journal_.records()) {
       TerrainZoomSummary& zoom = summary.zooms[record.id.zoom];
       ++zoom.tiles;
@@ -179,6 +187,11 @@ class TerrainWriter {
       zoom.mean_error_m += record.max_error_m;
       zoom.max_error_m = std::max(zoom.max_error_m, record.max_error_m);
       detail_m[record.id.zoom] = std::max(detail_m[record.id.zoom], record.border_detail_m);
+      if (record.hausdorff_m >= 0.0) {
+        ++measured[record.id.zoom];
+        distance_m[record.id.zoom] += record.hausdorff_m;
+        zoom.max_hausdorff_m = std::max(zoom.max_hausdorff_m, record.hausdorff_m);
+      }
       summary.bytes += record.bytes;
       ++summary.tiles;
     }
@@ -188,6 +201,7 @@ class TerrainWriter {
       zoom.tolerance_m = pyramid_.tolerance_m(z);
       const auto tiles = static_cast<double>(zoom.tiles);
       for (double* mean : {&zoom.mean_vertices, &zoom.mean_triangles, &zoom.mean_error_m}) *mean /= tiles;
+      if (measured[z] > 0) zoom.mean_hausdorff_m = distance_m[z] / measured[z];
       const bool shared = pyramid_.shares_borders_above(z) && detail_m[z] == 0.0 && detail_m[z - 1] == 0.0;
       if (z > 0 && !shared) {
         zoom.gap_bound_m = pyramid_.tolerance_m(z) + pyramid_.tolerance_m(z - 1) + detail_m[z] +

@@ -128,8 +128,8 @@ enum class TerrainBorders {
 
 struct TerrainOptions {
   TerrainMethod method = TerrainMethod::Greedy;
-  /// Shared: the line is as fine as the finest of these zooms needs it, and all of them have one step of height, so that
-  /// the tolerance holds as it does elsewhere. At most six zooms apart. Where data is missing along a border it is
+  /// Shared: the line is as fine as the finest of these zooms needs it, and all of them have one step of height, so
+  /// that the tolerance holds as it does elsewhere. At most six zooms apart. Where data is missing along a border it is
   /// nested instead.
   TerrainBorders borders = TerrainBorders::Nested;
   std::uint32_t shared_from_zoom = none;  ///< none: as far up from shared_to_zoom as can be
@@ -229,6 +229,9 @@ class TerrainPyramid {
 
   /// Precondition: the tile is one of tiles(). Errors of the source only.
   [[nodiscard]] Result<TerrainTile> build(const TileId& tile) const;
+  /// Heights in metres of a tile's 257 x 257 posts, row by row from the south-west, as the tile is built from them; NaN
+  /// where there is no data. Errors of the source only.
+  [[nodiscard]] Result<std::vector<float>> posts(const TileId& tile) const;
 
   /// Builds tiles on several threads and hands each to `take` as it is done, on the thread that built it, in no
   /// particular order. Stops at the first error of the source or of `take`.
@@ -254,7 +257,7 @@ class TerrainPyramid {
   std::vector<Zoom> zooms_;
   std::uint64_t fingerprint_ = 0;
   std::uint32_t shared_from_zoom_ = none, shared_to_zoom_ = none;  // none: borders are nested
-  float polar_height_m_[2] = {};  // south, north; NaN: no data there
+  float polar_height_m_[2] = {};                                   // south, north; NaN: no data there
 
   friend class TerrainPlanner;
   friend class TileBuilder;

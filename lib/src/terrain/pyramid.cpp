@@ -70,7 +70,7 @@ class TerrainPlanner {
       if (!std::has_single_bit(divisions) || divisions > 64) return bad("grid divisions are 1, 2, 4, ... 64");
     }
     if (options_.water != nullptr && !std::isnan(options_.sea_level_m))
-      return bad("water is masked by height or by a source, not both");
+      return bad("water is masked by sea_level_m or by the source `water`, not by both");
     return check_points();
   }
 
@@ -339,6 +339,8 @@ std::vector<TileId> TerrainPyramid::all_tiles() const {
 }
 
 Result<TerrainTile> TerrainPyramid::build(const TileId& tile) const { return TileBuilder{*this, tile}.build(); }
+
+Result<std::vector<float>> TerrainPyramid::posts(const TileId& tile) const { return TileBuilder{*this, tile}.posts(); }
 
 Status TerrainPyramid::build(std::span<const TileId> tiles, const std::function<Status(const TerrainTile&)>& take,
                              const Context& context) const {

@@ -216,6 +216,16 @@ Status TileBuilder::put_water(TerrainTile& tile) const {
   return Done{};
 }
 
+Result<std::vector<float>> TileBuilder::posts() {
+  if (Status status = read_posts(); !status) return status.error();
+  std::vector<float> heights_m;
+  heights_m.reserve(std::size_t{size + 1} * (size + 1));
+  for (int y = 0; y <= size; ++y) {
+    for (int x = 0; x <= size; ++x) heights_m.push_back(lattice_.at(x, y));
+  }
+  return heights_m;
+}
+
 Result<TerrainTile> TileBuilder::build() {
   Status status = read_posts();
   if (!status) return status.error();

@@ -15,6 +15,7 @@ class TileBuilder {
   TileBuilder(const TerrainPyramid& pyramid, const TileId& id)
       : pyramid_{pyramid}, zoom_{pyramid.zooms_[id.zoom]}, id_{id} {}
   [[nodiscard]] Result<TerrainTile> build();
+  [[nodiscard]] Result<std::vector<float>> posts();
 
  private:
   [[nodiscard]] PostWindow window() const;

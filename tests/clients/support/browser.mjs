@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Opens a page in headless Chromium over a server on the loopback interface; nothing else is asked for anything.
 //
-//     const { result, faults, requested } = await look({ page, roots, modules, query, init, picture });
+//     const { result, faults, requested } = await look({ page, roots, modules, query, init, picture, mirrors, script });
 //
 // page: an HTML file. The server maps /page/ to its folder, /support/ to this one, /modules/ to `modules`, and what `roots`
 // adds ({ '/tiles/': folder }). The page sets window.result and then window.finished = true; `init` is there before as
 // window.question. `faults` lists what was not found, scripts that failed, and result.failures; `requested`, the names
-// served. `picture` keeps a screenshot.
+// served. `picture` keeps a screenshot. `mirrors` ({ 'https://host/path/': folder }) stands in for addresses that a page
+// names; `script` is JavaScript that runs in the page before its own.
 import fs from 'fs';
 import http from 'http';
 import path from 'path';
@@ -20,7 +21,7 @@ const types = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/ja
 async function serve(roots, requested, missing) {
   const server = http.createServer((request, response) => {
     const name = decodeURIComponent(new URL(request.url, 'http://host').pathname);
-    const root = Object.keys(roots).find((prefix) => name.startsWith(prefix));
+    const root = Object.keys(roots).sort((a, b) => b.length - a.length).find((prefix) => name.startsWith(prefix));
     fs.readFile(root ? path.join(roots[root], name.slice(root.length)) : '', (error, data) => {
       if (error) {
         if (name !== '/favicon.ico') missing.push(name);
@@ -38,7 +39,7 @@ async function serve(roots, requested, missing) {
   return server;
 }
 
-export async function look({ page: file, roots, modules, query = '', init = null, picture = null }) {
+export async function look({ page: file, roots, modules, query = '', init = null, picture = null, mirrors = {}, script = '' }) {
   const { chromium } = createRequire(path.resolve(modules, 'here.js'))('playwright-core');
   const all = { '/page/': path.dirname(path.resolve(file)), '/support/': path.dirname(fileURLToPath(import.meta.url)),
                 '/modules/': path.resolve(modules) };
@@ -56,6 +57,14 @@ export async function look({ page: file, roots, modules, query = '', init = null
       missing.push(route.request().url());
       route.abort();
     });
+    for (const [address, folder] of Object.entries(mirrors)) {
+      await page.route((url) => url.href.startsWith(address), (route) => {
+        const name = new URL(route.request().url().slice(address.length), 'http://host/').pathname.slice(1);
+        requested.push(address + name);
+        return route.fulfill({ path: path.join(path.resolve(folder), name), headers: { 'Access-Control-Allow-Origin': '*' } });
+      });
+    }
+    if (script) await page.addInitScript(script);
     await page.addInitScript((question) => { window.question = question; }, init);
     await page.goto(`http://127.0.0.1:${server.address().port}/page/${path.basename(file)}${query}`);
     await page.waitForFunction('window.finished === true', null, { timeout: 200000 });

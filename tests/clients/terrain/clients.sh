@@ -3,7 +3,7 @@
 # Shows a generated terrain pyramid to real clients: two quantized-mesh decoders, CesiumJS, gltf-validator.
 #
 #   clients.sh tiles LODESTONE FOLDER                 makes heights and pyramids of them (LODESTONE = the program)
-#   clients.sh decoders|cesium|validator MODULES TILES
+#   clients.sh decoders|cesium|viewer|validator MODULES TILES
 #
 # PICTURES=PREFIX keeps what the browser shows.
 set -euo pipefail
@@ -17,7 +17,7 @@ case "$1" in
     mkdir -p "$3"
     node "$here/heights.mjs" "$3/heights.asc"
     "$2" terrain "$3/heights.asc" -o "$3/mesh" --max-error 20m --sea-level 0m --quiet
-    "$2" terrain "$3/heights.asc" -o "$3/tiles3d" --max-error 40m --max-zoom 3 --as 3dtiles --quiet ;;
+    "$2" terrain "$3/heights.asc" -o "$3/tiles3d" --max-error 40m --max-zoom 4 --as 3dtiles --quiet ;;
   decoders)
     need_package "$2" @here/quantized-mesh-decoder
     need_package "$2" @loaders.gl/terrain
@@ -29,5 +29,9 @@ case "$1" in
     need_browser "$2"
     need_package "$2" cesium
     node "$here/look.mjs" "$3" "$2" ${PICTURES:+"${PICTURES}_terrain.png"} ;;
+  viewer)
+    need_browser "$2"
+    need_package "$2" cesium
+    node "$here/viewer.mjs" "$here/../../../examples/terrain_viewer/index.html" "$3" "$2" ${PICTURES:+"${PICTURES}_terrain_viewer.png"} ;;
   *) sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac

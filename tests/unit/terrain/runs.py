@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Runs of `lodestone terrain` as a whole: killed and resumed, and from several raster formats.
 
-    runs.py LODESTONE killed|formats
+    runs.py LODESTONE killed|formats|hostile|by_zoom
 """
+import array
+import json
 import math
 import os
 import shutil
@@ -75,6 +77,16 @@ def formats(folder):
         subprocess.run(["gdal_translate", "-q", "-a_srs", "EPSG:4326", "-ot", "Float32", "-of", driver, raster, folder / name], check=True)
         terrain(folder / name, folder / driver)
         assert tree(folder / driver) == expected, f"{driver} gives other tiles"
+    # SRTM's own format, in which the name says the place: samples in big-endian words, north first.
+    samples = array.array("h", (round(900 * math.sin(0.011 * i) * math.cos(0.017 * j) + 400 * math.sin(0.07 * i + 0.05 * j))
+                                for j in range(1201) for i in range(1201)))
+    samples[600 * 1201 + 600] = -32768
+    samples.byteswap()
+    (folder / "N11E022.hgt").write_bytes(samples.tobytes())
+    subprocess.run(["gdal_translate", "-q", folder / "N11E022.hgt", folder / "hgt.tif"], check=True)
+    terrain(folder / "N11E022.hgt", folder / "hgt")
+    terrain(folder / "hgt.tif", folder / "hgt_tif")
+    assert tree(folder / "hgt") == tree(folder / "hgt_tif") and "4/17/8.terrain" in tree(folder / "hgt"), "a .hgt gives other tiles"
     subprocess.run(["gdalwarp", "-q", "-s_srs", "EPSG:4326", "-t_srs", "EPSG:3035", "-r", "bilinear", raster, folder / "projected.tif"], check=True)
     terrain(folder / "projected.tif", folder / "projected")
     projected = tree(folder / "projected")
@@ -83,6 +95,73 @@ def formats(folder):
     assert len(both) > 0.8 * len(expected), f"only {len(both)} of {len(expected)} tiles"
 
 
+def hostile(folder):
+    """Rasters at the edge of what there is: a report without cracks within the tolerance, or one clear line."""
+    def grid(name, rows, west, south, cell):
+        text = "\n".join(" ".join(str(value) for value in row) for row in rows)
+        (folder / name).write_text(f"ncols {len(rows[0])}\nnrows {len(rows)}\nxllcenter {west}\nyllcenter {south}\n"
+                                   f"cellsize {cell}\nNODATA_value -9999\n{text}\n", encoding="ascii")
+        return folder / name
+
+    def run(raster, *options):
+        out = folder / f"out{len(list(folder.iterdir()))}"
+        done = subprocess.run([PROGRAM, "terrain", raster, "-o", out, "--quiet", "--json", *options], capture_output=True, text=True)
+        assert done.returncode in (0, 1, 2), f"{raster}: ended with {done.returncode}: {done.stderr}"
+        said = json.loads(done.stdout.splitlines()[-1])
+        if done.returncode == 0:
+            assert said["cracks"] == 0, f"{raster}: {said['cracks']} cracks"
+        return done.returncode, said, done.stderr + done.stdout
+
+    waves = [[round(3000 * math.sin(0.7 * i) * math.cos(0.9 * j)) for i in range(32)] for j in range(17)]
+    two = grid("two.asc", [[1, 2], [3, 4]], 10, 50, 0.01)
+    assert run(two, "--max-error", "1m")[0] == 0
+    # The whole globe, both poles and the antimeridian; a strip across it; a mountain at a pole.
+    for name, west, south, cell in (("world", -180, -90, 11.25), ("across", 175, -4, 0.5), ("pole", 20, 80, 0.625)):
+        for borders in ("nested", "shared"):
+            code, said, text = run(grid(f"{name}.asc", waves, west, south, cell), "--max-error", "50m", "--max-zoom", "3", "--borders", borders)
+            assert code == 0, text
+            for zoom in said["zooms"]:
+                assert zoom["max_error_m"] <= 1.02 * zoom["tolerance_m"], f"{name}: {zoom}"
+    for scale in ("1e6", "-1000", "1e-6"):
+        code, said, text = run(folder / "across.asc", "--scale", scale, "--max-zoom", "2", "--max-error", "1km")
+        assert code == 0 or "error" in text, text
+    # What cannot be made is said in one line.
+    nothing = grid("nothing.asc", [[-9999] * 4] * 4, 0, 0, 1)
+    code, _, text = run(nothing)
+    assert code == 2 and "missing" in text, text
+    assert run(nothing, "--nodata", "fill", "--fill", "7")[0] == 0
+    code, _, text = run(two, "--sea-level", "0m", "--water-mask", two)
+    assert code == 1 and "--sea-level" in text and "--water-mask" in text, text
+    for option, value in (("--keep", "0.5,2"), ("--cell", "0"), ("--cluster", "a/2"), ("--max-error", "-1m"), ("--grid", "3")):
+        code, _, text = run(two, option, value)
+        assert code == 1 and (option in text or "grid" in text), text
+    # Damaged: cut and scrambled at many places.
+    if shutil.which("gdal_translate"):
+        subprocess.run(["gdal_translate", "-q", "-ot", "Int16", "-co", "COMPRESS=DEFLATE", folder / "world.asc", folder / "world.tif"], check=True)
+        whole = (folder / "world.tif").read_bytes()
+        for at in range(0, len(whole), max(1, len(whole) // 12)):
+            for damaged in (whole[:at], whole[:at] + bytes(byte ^ 0x5A for byte in whole[at:at + 8]) + whole[at + 8:]):
+                (folder / "damaged.tif").write_bytes(damaged)
+                run(folder / "damaged.tif", "--max-zoom", "1")
+
+
+def by_zoom(folder):
+    """Values given by zoom: a list, or that of zoom 0 doubled, are the same; one for all is not."""
+    raster = folder / "grid.asc"
+    write_grid(raster)
+    counts = {}
+    for keep in ("0.005,0.01,0.02,0.04,0.08", "0.005x2", "0.08/2", "0.08"):
+        out = folder / keep.replace("/", "h")
+        done = subprocess.run([PROGRAM, "terrain", raster, "-o", out, "--max-zoom", "4", "--method", "points-random", "--keep", keep,
+                               "--grid", "1", "--hausdorff", "--quiet", "--json"], check=True, capture_output=True, text=True)
+        zooms = json.loads(done.stdout.splitlines()[-1])["zooms"]
+        counts[keep] = [zoom["mean_triangles"] for zoom in zooms]
+        assert zooms[4]["mean_hausdorff_m"] > 0 and zooms[4]["max_hausdorff_m"] >= zooms[4]["mean_hausdorff_m"]
+    assert counts["0.005,0.01,0.02,0.04,0.08"] == counts["0.005x2"]
+    assert counts["0.08"][4] == counts["0.005x2"][4] and counts["0.08"][3] > 1.3 * counts["0.005x2"][3], counts
+    assert counts["0.08/2"][4] < counts["0.08"][4], counts
+
+
 with tempfile.TemporaryDirectory(prefix="lodestone-terrain-") as scratch:
     os.umask(0o022)
-    {"killed": killed, "formats": formats}[sys.argv[2]](Path(scratch))
+    {"killed": killed, "formats": formats, "hostile": hostile, "by_zoom": by_zoom}[sys.argv[2]](Path(scratch))
