@@ -45,7 +45,8 @@ make() {  # make NAME KIND OPTIONS...: generate, build, verify, sheet, sweep
   "$lodestone" play "$name.lode"
   step "$name: eight levels and a sweep"
   "$lodestone" render "$name.lode" --sheet 8 --size 480x360 -o "${name}_levels.png"
-  "$lodestone" sweep "$name.lode" --frames 160 --from 1 --to 0.01 --and-back --size 480x360 --video "${name}_sweep.gif"
+  "$lodestone" sweep "$name.lode" --frames 160 --from 1 --to 0.01 --and-back --morph-seconds 0.5 --size 480x360 \
+    --video "${name}_sweep.gif"
 }
 
 make house house --roof hip --triangles "${HOUSE_TRIANGLES:-120000}"

@@ -16,7 +16,8 @@ class Sweep final : public Verb {
     return "Move a model's level under a fixed camera and measure popping";
   }
   [[nodiscard]] std::string example() const override {
-    return "lodestone sweep house.lode --frames 60 --from 1 --to 0.02 --size 320x240 --video house.gif";
+    return "lodestone sweep house.lode --frames 60 --from 1 --to 0.02 --morph-seconds 0.5 --size 320x240 --video "
+           "house.gif";
   }
   void declare(Arguments& arguments) override;
   [[nodiscard]] Status run(Session& session) override;
@@ -52,7 +53,9 @@ void Sweep::declare(Arguments& arguments) {
   arguments.flag("--and-back", and_back_, "Half of the frames there, half back");
   arguments.choice("--style", style_, {"morph", "hard", "discrete", "fade"}, "How levels follow each other");
   arguments.count("--levels", levels_, 2, 100, "Fixed levels of discrete and fade");
-  arguments.number("--morph-seconds", morph_s_, 0.0, 10.0, "Time that one record glides in style morph");
+  arguments.number(
+      "--morph-seconds", morph_s_, 0.0, 10.0,
+      "Time that one record glides in style morph; at most half of the way's, or what is seen lags behind");
   arguments.file("-o,--output", folder_, "Folder that keeps the frames as PNG", Need::Optional);
   arguments.file("--video", video_, "Animated GIF to write", Need::Optional);
   camera_.declare(arguments);
@@ -109,6 +112,17 @@ Status Sweep::run(Session& session) {
   options->on_frame = [&](const Image& image, std::uint32_t frame) {
     return keep_frame(image, frame, video ? &*video : nullptr);
   };
+  // At the rate of 60 frames a second that the verb promises.
+  const double way_s = frames_ / (and_back_ ? 120.0 : 60.0);
+  if (style_ == "morph" && morph_s_ > way_s / 2.0) {
+    char line[160];
+    std::snprintf(
+        line, sizeof line,
+        "a record glides for %.3g s and the way takes %.3g s: what is seen lags behind; take more --frames or "
+        "fewer --morph-seconds",
+        morph_s_, way_s);
+    session.remark(line);
+  }
   auto swept = render::sweep(*model, *options, session.context());
   session.keep(swept);
   if (!swept) return swept.error();

@@ -288,6 +288,11 @@ class Keys(Contract):
         self.assertEqual(len(list((self.scratch / "frames").glob("*.png"))), 12)
         self.assertEqual(gif.read_bytes()[:6], b"GIF89a")
 
+    def test_a_sweep_too_short_for_its_morph_is_remarked_upon(self):
+        words = ("sweep", self.model, "--frames", 12, "--to", 0.05, "--size", "160x120")
+        self.assertIn("lags behind", run(*words).stderr)
+        self.assertNotIn("lags behind", run(*words, "--morph-seconds", 0.1).stderr)
+
     def test_sweep_by_what_an_eye_needs(self):
         small = ("--frames", 6, "--size", "160x120", "--style", "hard")
         near = self.json("sweep", self.model, *small, "--perceptual", "200", "-o", self.scratch / "near")
