@@ -4,7 +4,10 @@
 //     bench_outcrop build MESH FOLDER RATIO [THREADS]   processor seconds, memory, bytes of a pyramid (0 = automatic)
 //     bench_outcrop first FOLDER                        the first picture
 //     bench_outcrop load MESH FOLDER                    ten distances: monolith beside pyramid
-//     bench_outcrop error MESH                          error over simplification, beside libmeshoptimizer
+//     bench_outcrop error MESH [FOLDER]                 error over simplification, beside libmeshoptimizer and the
+//     meshes
+//                                                       FOLDER/{vtk,meshlab}_PERCENT.obj (outcrop_vtk.py,
+//                                                       outcrop_meshlab.sh)
 //
 // One JSON object per line.
 #include <meshoptimizer.h>
@@ -47,7 +50,20 @@ double peak_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-// Memory of the process's own; the rest of the peak are pages of libraries (software OpenGL brings 74 MB of them).
+// Pages of the libraries that draw in software: what a machine with a graphics card has in its driver.
+double driver_mb() {
+  std::ifstream maps{"/proc/self/smaps"};
+  double kb = 0.0;
+  bool inside = false;
+  for (std::string line; std::getline(maps, line);) {
+    if (line.find("-") < line.find(" "))
+      inside = line.find("libLLVM") != line.npos || line.find("libOSMesa") != line.npos;
+    if (inside && line.rfind("Rss:", 0) == 0) kb += std::atof(line.c_str() + 4);
+  }
+  return kb / 1024.0;
+}
+
+// Memory of the process's own.
 double private_mb() {
   std::ifstream status{"/proc/self/status"};
   for (std::string word; status >> word;) {
@@ -88,7 +104,8 @@ int build(const char* file, const char* folder, double ratio, unsigned threads) 
   return 0;
 }
 
-// From nothing to a picture of the whole, as a program that is told to open a tileset: the root tile alone, drawn once.
+// From nothing to a picture of the whole, as a program that is told to open a tileset: the root tile alone, drawn once,
+// with one sample a pixel.
 int first(const char* folder) {
   const double start = wall_seconds();
   const double processor = processor_seconds();
@@ -100,7 +117,9 @@ int first(const char* folder) {
   render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
   options.camera.yaw_rad = scene.yaw_rad();
   const auto view = render::view_of(options, (*pyramid)->bounds(), (*pyramid)->origin(), {});
-  const auto frame = render::Frame::create((*stage)->gl(), render::frame_size(options));
+  render::FrameSize size = render::frame_size(options);
+  size.coverage_samples = 1;
+  const auto frame = render::Frame::create((*stage)->gl(), size);
   if (!view || !frame) return 2;
   const double ready = wall_seconds();
   scene.update(*view, 0.0);
@@ -108,8 +127,8 @@ int first(const char* folder) {
   const Image picture = (*stage)->presenter().read(*frame);
   std::printf(
       "{\"first_picture_seconds\": %.2f, \"processor_seconds\": %.2f, \"of_that_before_drawing\": %.2f, "
-      "\"peak_megabytes\": %.0f, \"private_megabytes\": %.0f, \"triangles\": %u}\n",
-      wall_seconds() - start, processor_seconds() - processor, ready - start, peak_mb(), private_mb(),
+      "\"peak_megabytes\": %.0f, \"private_megabytes\": %.0f, \"driver_megabytes\": %.0f, \"triangles\": %u}\n",
+      wall_seconds() - start, processor_seconds() - processor, ready - start, peak_mb(), private_mb(), driver_mb(),
       scene.triangle_count());
   return picture.empty() ? 2 : 0;
 }
@@ -161,26 +180,55 @@ Mesh by_meshoptimizer(const Mesh& mesh, std::uint32_t target) {
 
 void print_error(const char* name, const Mesh& source, const Mesh& result) {
   const auto distance = compare(source, result, {.samples = 200'000});
-  const auto look = render::six_direction_rms(source, result, 384);
-  if (!distance || !look) return;
+  const auto lit = render::six_direction_rms(source, result, 384);
+  const auto plain = render::six_direction_rms(source, result, 384, {.lighting = render::Lighting::Photograph});
+  if (!distance || !lit || !plain) return;
   const double ppm = 1e6 / distance->diagonal_m;
-  std::printf(", \"%s\": {\"triangles\": %u, \"hausdorff_ppm\": %.0f, \"rms_ppm\": %.1f, \"texture_rms\": %.3f}", name,
-              result.triangle_count(), distance->hausdorff_m * ppm, distance->rms_m * ppm, *look);
+  std::printf(
+      ", \"%s\": {\"triangles\": %u, \"hausdorff_ppm\": %.0f, \"rms_ppm\": %.1f, \"texture_rms\": %.3f, \"lit_rms\": "
+      "%.3f}",
+      name, result.triangle_count(), distance->hausdorff_m * ppm, distance->rms_m * ppm, *plain, *lit);
 }
 
-int error(const char* file) {
+// What another program made of the mesh, with the looks of the mesh itself.
+void print_peer(const char* folder, const char* name, int percent, const Mesh& mesh) {
+  const std::filesystem::path file =
+      std::filesystem::path{folder} / (std::string{name} + '_' + std::to_string(percent) + ".obj");
+  if (!std::filesystem::exists(file)) return;
+  Mesh result = read(file.c_str(), LoadTextures::Reference);
+  result.materials = mesh.materials;
+  result.textures = mesh.textures;
+  result.face_materials.clear();
+  result.vertices.normals.clear();
+  print_error(name, mesh, result);
+}
+
+int error(const char* file, const char* peers) {
   const Mesh mesh = read(file, LoadTextures::Decoded);
   for (int percent = 10; percent <= 95; percent += percent < 90 ? 10 : 5) {
     const auto target = static_cast<std::uint32_t>(mesh.triangle_count() * (100 - percent) / 100);
     std::printf("{\"simplified_percent\": %d", percent);
-    for (const auto& [name, attributes] : {std::pair{"ours", Attributes::All}, {"positions_only", Attributes::None}}) {
-      const auto simplified = simplify(mesh, {.attributes = attributes,
+    struct Variant {
+      const char* name;
+      Attributes attributes;
+      double uv_weight, sharpness_power;
+    };
+    for (const Variant& v : {Variant{"ours", Attributes::All, 1.0, 1.0},
+                             {"half_uv", Attributes::All, 0.3, 1.0},
+                             {"no_sharpness", Attributes::All, 1.0, 0.0},
+                             {"half_uv_no_sharpness", Attributes::All, 0.3, 0.0},
+                             {"positions_only", Attributes::None, 0.0, 0.0}}) {
+      const auto simplified = simplify(mesh, {.attributes = v.attributes,
                                               .target_triangles = target,
-                                              .sharpness_power = attributes == Attributes::All ? 1.0 : 0.0});
-      if (simplified) print_error(name, mesh, simplified->mesh);
+                                              .uv_weight = v.uv_weight,
+                                              .sharpness_power = v.sharpness_power});
+      if (simplified) print_error(v.name, mesh, simplified->mesh);
     }
     // Its index buffer knows no materials: only where there is one.
-    if (mesh.materials.size() == 1) print_error("libmeshoptimizer", mesh, by_meshoptimizer(mesh, target));
+    if (mesh.materials.size() == 1) {
+      print_error("libmeshoptimizer", mesh, by_meshoptimizer(mesh, target));
+      for (const char* name : {"vtk", "meshlab"}) print_peer(peers, name, percent, mesh);
+    }
     std::printf("}\n");
     std::fflush(stdout);
   }
@@ -196,9 +244,9 @@ int main(int argc, char** argv) {
   }
   if (mode == "first" && argc == 3) return first(argv[2]);
   if (mode == "load" && argc == 4) return load(argv[2], argv[3]);
-  if (mode == "error" && argc == 3) return error(argv[2]);
-  std::fprintf(
-      stderr,
-      "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | first FOLDER | load MESH FOLDER | error MESH\n");
+  if (mode == "error" && (argc == 3 || argc == 4)) return error(argv[2], argc == 4 ? argv[3] : "");
+  std::fprintf(stderr,
+               "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | first FOLDER | load MESH FOLDER | error MESH "
+               "[FOLDER]\n");
   return 1;
 }

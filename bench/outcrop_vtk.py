@@ -4,7 +4,7 @@
 
     outcrop_vtk.py MESH.obj FOLDER PERCENT...    writes FOLDER/vtk_PERCENT.obj, simplified by so much, one material
 
-    bench_outcrop error MESH.obj --peer FOLDER/vtk_50.obj 50 ...
+    bench_outcrop error MESH.obj FOLDER
 """
 import os
 import resource

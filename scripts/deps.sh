@@ -14,7 +14,7 @@ packages_of() {
   case "$1" in
     build) echo g++ cmake ninja-build pkg-config git ca-certificates \
       libglm-dev libtbb-dev libopenmesh-dev libnlopt-dev libmetis-dev libcereal-dev libzstd-dev libxxhash-dev \
-      nlohmann-json3-dev libcli11-dev libmeshoptimizer-dev libassimp-dev libtinygltf-dev libdraco-dev libpugixml-dev \
+      nlohmann-json3-dev libcli11-dev libmeshoptimizer-dev libcurl4-openssl-dev libassimp-dev libtinygltf-dev libdraco-dev libpugixml-dev \
       libspng-dev 'libturbojpeg0-dev|libturbojpeg-dev' libwebp-dev libgif-dev libstb-dev libproj-dev libopenscenegraph-dev libgdal-dev zlib1g-dev ;;
     viewer) echo libosmesa6-dev libglfw3-dev libimgui-dev libgl1-mesa-dri ;;
     test) echo ccache catch2 librapidcheck-dev python3 npm xvfb xdotool imagemagick assimp-testmodels ;;

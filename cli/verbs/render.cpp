@@ -43,10 +43,12 @@ class Render final : public Verb {
   bool untextured_ = false;
   bool white_ = false;
   std::uint32_t sheet_levels_ = 0;
+  std::filesystem::path cache_;
+  std::uint64_t cache_bytes_ = TileCacheOptions{}.max_bytes;
 };
 
 void Render::declare(Arguments& arguments) {
-  input_.declare(arguments, "FILE", "Mesh, .lode or .lodg file or tileset.json");
+  input_.declare(arguments, "FILE", "Mesh, .lode or .lodg file, or tileset.json (its address, if it is on the web)");
   arguments.file("-o,--output", output_, "Picture to write: .png, .jpg or .webp", Need::Required);
   level_.declare(arguments);
   arguments.file("--plan", plan_, "With --perceptual: the level that a plan made by 'distances' needs", Need::Optional);
@@ -57,6 +59,9 @@ void Render::declare(Arguments& arguments) {
   arguments.number("--error-px", error_px_, 1e-3, 1e6, "Of a .lodg file: error on the screen that is allowed, pixels");
   arguments.flag("--untextured", untextured_, "Leave textures out");
   arguments.flag("--white", white_, "White background");
+  arguments.file("--tile-cache", cache_, "Folder for copies of tiles, of a tileset on the web or a slow disk",
+                 Need::Optional);
+  arguments.bytes("--tile-cache-bytes", cache_bytes_, "Most bytes of all copies in that folder");
   arguments.count("--sheet", sheet_levels_, 0, 64,
                   "A sheet of so many levels of a model, each --size large, 0 = one picture");
 }
@@ -84,11 +89,14 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
 
 // The tiles that this camera needs, none coarser than a pixel.
 Result<render::Picture> Render::draw_tiles(Session& session, const render::RenderOptions& options) const {
-  const auto pyramid = TilePyramid::open(input_.file());
+  std::optional<TileCacheOptions> cache;
+  if (!cache_.empty()) cache = TileCacheOptions{.folder = cache_, .max_bytes = cache_bytes_};
+  const auto pyramid = TilePyramid::open(input_.file(), cache);
   if (!pyramid) return pyramid.error();
   auto picture = render::render_tiles(*pyramid, options);
   if (!picture) return Error{picture.error().code, picture.error().message, input_.file().string()};
   session.report().set("tiles", picture->tiles);
+  if (cache) session.report().set("cached_tiles", (*pyramid)->cache_status().hits);
   return picture;
 }
 

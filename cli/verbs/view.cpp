@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The window is a program of its own, because the headless renderer in this one brings another OpenGL along.
+#include <lodestone/tile_loader.h>
+
 #include "run_program.h"
 #include "verbs.h"
 
@@ -18,6 +20,8 @@ class View final : public Verb {
     arguments.flag("--perceptual", perceptual_, "Level by the camera's distance: at most half a pixel off");
     arguments.file("--plan", plan_, "Level by the camera's distance: what 'distances' measured to be seen",
                    Need::Optional);
+    arguments.file("--tile-cache", cache_, "Folder for copies of tiles, of a tileset on the web or a slow disk",
+                   Need::Optional);
   }
   [[nodiscard]] Status run(Session& session) override;
 
@@ -25,6 +29,7 @@ class View final : public Verb {
   std::filesystem::path file_;
   bool perceptual_ = false;
   std::filesystem::path plan_;
+  std::filesystem::path cache_;
 };
 
 // lodestone-view beside this program, as installed; else in the build tree; else on the PATH.
@@ -32,13 +37,14 @@ std::filesystem::path find_viewer() { return find_program("lodestone-view", "../
 
 Status View::run(Session& session) {
   std::error_code fault;
-  if (!std::filesystem::exists(file_, fault)) {
+  if (!is_tileset_file(file_) && !std::filesystem::exists(file_, fault)) {  // a tileset may lie on the web
     return Error{ErrorCode::NotFound, "there is no such file", file_.string()};
   }
   const std::string program = find_viewer().string();
   std::vector<std::string> command{program, file_.string()};
   if (perceptual_) command.emplace_back("--perceptual");
   if (!plan_.empty()) command.insert(command.end(), {"--plan", plan_.string()});
+  if (!cache_.empty()) command.insert(command.end(), {"--tile-cache", cache_.string()});
   const auto ended = run_to_end(std::move(command));
   if (!ended) {
     return Error{ErrorCode::NotFound, "cannot be started, install lodestone-view beside lodestone", program};

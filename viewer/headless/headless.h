@@ -114,7 +114,8 @@ struct SweepReport {
 
 /// Root mean square colour difference (0..255) over pictures of both meshes from the six axis directions, each framed
 /// by a's box, over the pixels that either mesh covers. World coordinates: different origins are taken into account.
-[[nodiscard]] Result<double> six_direction_rms(const Mesh& a, const Mesh& b, std::uint32_t size_px = 512);
+[[nodiscard]] Result<double> six_direction_rms(const Mesh& a, const Mesh& b, std::uint32_t size_px = 512,
+                                               const Look& look = {});
 
 /// A sheet of `levels` pictures (columns x rows as square as it gets) from the finest to `coarsest_ratio` in equal
 /// factors, each with its triangles, error and level written below.

@@ -38,7 +38,7 @@ void add_covered(SquareSum& total, const Image& a, const Image& b, const Image& 
 
 }  // namespace
 
-Result<double> six_direction_rms(const Mesh& a, const Mesh& b, std::uint32_t size_px) {
+Result<double> six_direction_rms(const Mesh& a, const Mesh& b, std::uint32_t size_px, const Look& look) {
   if (size_px == 0) return Error{ErrorCode::BadArgument, "a picture needs at least one pixel", ""};
   auto stage = Stage::create();
   if (!stage) return stage.error();
@@ -56,7 +56,7 @@ Result<double> six_direction_rms(const Mesh& a, const Mesh& b, std::uint32_t siz
     all.add(box_b.max + offset_m);
   }
   const auto picture = [&](const View& view, std::span<const Item> items) {
-    on.renderer().draw(*frame, view, all, items, Look{});
+    on.renderer().draw(*frame, view, all, items, look);
     return on.presenter().read(*frame);
   };
   SquareSum total;

@@ -18,9 +18,15 @@ enum class Coloring : std::uint8_t {
   Clusters,    ///< a colour for each cluster of a cluster graph
 };
 
+enum class Lighting : std::uint8_t {
+  Lamps,       ///< a key light, a fill light and a sky: shape shows
+  Photograph,  ///< none: colours as they are, for photographs that have their light in them
+};
+
 struct Look {
   Coloring coloring = Coloring::Materials;
   Background background = Background::Gradient;
+  Lighting lighting = Lighting::Lamps;
   /// Draw triangle edges over the surface.
   bool wireframe = false;
 };

@@ -35,6 +35,7 @@ Renderer::SurfaceProgram::SurfaceProgram(Program p)
       up(program.uniform("up")),
       wire_px(program.uniform("wire_px")),
       lod_colors(program.uniform("lod_colors")),
+      unlit(program.uniform("unlit")),
       model_size_m(program.uniform("model_size_m")),
       share(program.uniform("share")),
       morph(program.uniform("morph")) {}
@@ -98,6 +99,7 @@ void Renderer::draw(const Frame& frame, const View& view, const Box& bounds, std
   // A uniform that a program lacks has place -1, and setting it does nothing.
   gl_->uniform_1f(surface.wire_px, look.wireframe ? 1.1F * static_cast<float>(frame.size().supersample) : 0.0F);
   gl_->uniform_1i(surface.lod_colors, lod_colors ? 1 : 0);
+  gl_->uniform_1i(surface.unlit, look.lighting == Lighting::Photograph ? 1 : 0);
   gl_->active_texture(GL_TEXTURE0);
 
   gl_->enable(GL_DEPTH_TEST);

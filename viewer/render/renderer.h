@@ -46,8 +46,8 @@ class Renderer {
   struct SurfaceProgram {
     explicit SurfaceProgram(Program p);
     Program program;
-    GLint to_eye, to_clip, base_color, image, alpha_cutoff, has_normals, up, wire_px, lod_colors, model_size_m, share,
-        morph;
+    GLint to_eye, to_clip, base_color, image, alpha_cutoff, has_normals, up, wire_px, lod_colors, unlit, model_size_m,
+        share, morph;
   };
   struct BlendedTriangle {
     float depth;  ///< along the line of sight, larger is farther

@@ -80,6 +80,7 @@ out vec4 pixel;
 uniform vec4 base_color;      // linear
 uniform sampler2D image;      // decoded to linear by the sampler; white where there is none
 uniform float alpha_cutoff;
+uniform int unlit;
 uniform int has_normals;
 uniform vec3 up;              // the world's, in eye space
 uniform float share;          // of the pixels: below 1 where it comes, below 0 where it leaves
@@ -147,7 +148,7 @@ void main() {
     alpha = 1.0;
   }
 #endif
-  vec3 shaded = albedo * light(shading_normal());
+  vec3 shaded = unlit != 0 ? albedo : albedo * light(shading_normal());
 #ifdef EDGES
   if (wire_px > 0.0) {
     vec3 width = fwidth(f_barycentric) * wire_px;

@@ -59,6 +59,7 @@ App::App(const WindowOptions& options, std::unique_ptr<GlfwWindow> window, std::
   if (options.file.empty()) {
     message_ = "Drop a model here: .lode, OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...";
   } else {
+    loader_.keep_tiles_in(options.tile_cache);
     loader_.start(options.file);
   }
 }

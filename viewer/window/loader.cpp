@@ -7,10 +7,13 @@
 namespace lodestone::render {
 namespace {
 
-Result<Loader::Opened> open(const std::filesystem::path& file, const Context& context) {
+Result<Loader::Opened> open(const std::filesystem::path& file, const std::filesystem::path& tile_cache,
+                            const Context& context) {
   if (file.extension() == ".osgb") return is_for_openscenegraph(file);
   if (is_tileset_file(file)) {
-    auto tiles = TilePyramid::open(file);
+    std::optional<TileCacheOptions> cache;
+    if (!tile_cache.empty()) cache = TileCacheOptions{.folder = tile_cache};
+    auto tiles = TilePyramid::open(file, cache);
     if (!tiles) return tiles.error();
     return Loader::Opened{std::move(*tiles)};
   }
@@ -66,7 +69,7 @@ void Loader::load() {
     const std::lock_guard lock{mutex_};
     stage_ = stage;
   };
-  auto result = open(file_, context);
+  auto result = open(file_, tile_cache_, context);
   const std::lock_guard lock{mutex_};
   result_ = std::move(result);
   busy_ = false;

@@ -27,6 +27,8 @@ class Loader {
   using Opened = std::variant<Model, Tiles, Clusters>;
   ~Loader();
 
+  /// A folder for copies of tiles; empty: none. From the next start() on.
+  void keep_tiles_in(const std::filesystem::path& folder) { tile_cache_ = folder; }
   /// Gives up what is under way and starts on `file`.
   void start(const std::filesystem::path& file);
   /// The result, once, when it is there.
@@ -42,6 +44,7 @@ class Loader {
   void load();
 
   std::filesystem::path file_;
+  std::filesystem::path tile_cache_;
   std::thread worker_;
   std::atomic<bool> cancel_ = false;
   std::atomic<bool> busy_ = false;

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   app.add_flag("--perceptual", options.perceptual, "level by the camera's distance: at most half a pixel off");
   app.add_option("--plan", options.plan,
                  "level by the camera's distance: what 'lodestone distances' measured to be seen");
+  app.add_option("--tile-cache", options.tile_cache, "folder for copies of tiles that lie on the web or a slow disk");
   app.add_flag("--fly", options.fly, "fly over the model, round and round");
   app.add_flag("--wireframe", options.wireframe, "draw triangle edges");
   app.add_flag("--lod-colors", options.lod_colors, "colour by triangle size");

@@ -22,8 +22,9 @@ struct WindowOptions {
   /// Start with the level that the camera's distance asks for: what `plan` has measured to be needed, without one at
   /// most half a pixel off (equation 17 of perception.h).
   bool perceptual = false;
-  std::filesystem::path plan;  ///< plan.json of `lodestone distances` for `file`
-  bool fly = false;            ///< the camera flies over the model, round and round, until it is taken by hand
+  std::filesystem::path plan;        ///< plan.json of `lodestone distances` for `file`
+  std::filesystem::path tile_cache;  ///< folder for copies of tiles (TileCacheOptions); empty: none
+  bool fly = false;                  ///< the camera flies over the model, round and round, until it is taken by hand
   bool wireframe = false;
   bool lod_colors = false;
   bool cluster_colors = false;  ///< of a cluster graph

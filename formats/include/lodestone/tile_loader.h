@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,12 +30,27 @@
 
 namespace lodestone {
 
+/// Copies of tiles on a fast disk, for tilesets that lie on a slow one or are fetched: a network folder, the web.
+struct TileCacheOptions {
+  std::filesystem::path folder;          ///< made if it is missing; tilesets and programs may share one
+  std::uint64_t max_bytes = 1ULL << 30;  ///< of all copies in the folder; those not used for longest go first
+};
+
+struct TileCacheStatus {
+  std::uint64_t hits = 0;    ///< tiles that were there
+  std::uint64_t misses = 0;  ///< tiles that had to be fetched
+  std::uint64_t bytes = 0;   ///< of all copies in the folder
+};
+
 /// An opened tileset.json; immutable, shared by threads. Understands boxes and spheres, glb and b3dm, one content per
 /// tile, refinement REPLACE.
 class TilePyramid {
  public:
-  /// Reads the JSON only. Errors: NotFound, Unreadable, BadData with what is missing.
-  [[nodiscard]] static Result<std::shared_ptr<const TilePyramid>> open(const std::filesystem::path& tileset_json);
+  /// Reads the JSON only. The path may be an address of the web (http://, https://). With a cache tiles are looked for
+  /// there first; copies of a tileset that has changed are not used again, and what is wrong with the cache later (a
+  /// full disk, a damaged copy) costs time only. Errors: NotFound, Unreadable, BadData with what is missing.
+  [[nodiscard]] static Result<std::shared_ptr<const TilePyramid>> open(
+      const std::filesystem::path& tileset_json, const std::optional<TileCacheOptions>& cache = std::nullopt);
   ~TilePyramid();
   TilePyramid(const TilePyramid&) = delete;
   TilePyramid& operator=(const TilePyramid&) = delete;
@@ -45,6 +61,8 @@ class TilePyramid {
   [[nodiscard]] const glm::dvec3& origin() const noexcept;
   [[nodiscard]] const Box& bounds() const noexcept;
   [[nodiscard]] const std::string& name(NodeId tile) const noexcept;
+  /// All zero without a cache.
+  [[nodiscard]] TileCacheStatus cache_status() const;
 
   /// Reads a tile. The mesh's own origin is zero or small; positions are in the frame of graph().
   [[nodiscard]] Result<Mesh> load(NodeId tile, LoadTextures textures = LoadTextures::Decoded) const;
@@ -110,7 +128,7 @@ class TilePager {
   std::unique_ptr<State> state_;
 };
 
-/// True if the file looks like a tileset.json.
+/// True if the file looks like a tileset.json; of an address of the web, if it ends with .json.
 [[nodiscard]] bool is_tileset_file(const std::filesystem::path& file);
 
 /// What to say where an .osgb file is given: it is OpenSceneGraph's own.

@@ -11,12 +11,12 @@
 
 #include "images/codecs.h"
 #include "reader.h"
+#include "tiles3d/fetch.h"
 
 namespace lodestone {
 namespace {
 
 using Json = nlohmann::json;
-constexpr std::uint64_t most_json_bytes = 256ULL << 20;
 constexpr std::uint64_t most_tile_bytes = 1ULL << 30;
 constexpr std::size_t most_tiles = 4'000'000;
 constexpr std::uint32_t most_depth = 512;
@@ -127,9 +127,7 @@ Result<Tileset> parse_tileset(std::span<const std::uint8_t> bytes, const std::st
 }
 
 Result<Tileset> read_tileset(const std::filesystem::path& file) {
-  const auto input = Input::open(file, most_json_bytes);
-  if (!input) return input.error();
-  const auto bytes = input->read_all();
+  const auto bytes = fetch(file, most_tileset_bytes);
   if (!bytes) return bytes.error();
   auto tileset = parse_tileset(*bytes, file.string());
   if (tileset) tileset->folder = file.parent_path();
@@ -138,7 +136,8 @@ Result<Tileset> read_tileset(const std::filesystem::path& file) {
 
 bool is_tileset_file(const std::filesystem::path& file) {
   if (file.extension() != ".json") return false;
-  const auto input = Input::open(file, most_json_bytes);
+  if (is_address(file)) return true;
+  const auto input = Input::open(file, most_tileset_bytes);
   if (!input) return false;
   // A tileset's first keys may come in any order; the error of some tile comes early in each.
   constexpr std::size_t head_bytes = 1U << 16;
@@ -158,14 +157,15 @@ Result<Mesh> parse_tile(std::span<const std::uint8_t> bytes, const std::filesyst
   return std::move(loaded->mesh);
 }
 
-Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures) {
-  const std::filesystem::path file = tileset.folder / tileset.tiles[tile].uri;
-  const auto input = Input::open(file, most_tile_bytes);
-  if (!input) return input.error();
-  const auto bytes = input->read_all();
+Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures, TileCache* cache) {
+  const std::string& uri = tileset.tiles[tile].uri;
+  const std::filesystem::path file = tileset.folder / uri;
+  std::optional<Bytes> copy = cache != nullptr ? cache->find(uri) : std::nullopt;
+  Result<Bytes> bytes = copy ? Result<Bytes>{std::move(*copy)} : fetch(file, most_tile_bytes);
   if (!bytes) return bytes.error();
   auto mesh = parse_tile(*bytes, file, {.textures = textures});
   if (!mesh) return mesh.error();
+  if (cache != nullptr && !copy) cache->keep(uri, *bytes);
   return LoadedTile{std::move(*mesh), bytes->size()};
 }
 

@@ -9,6 +9,8 @@
 
 #include <lodestone/formats.h>
 
+#include "tiles3d/tile_cache.h"
+
 namespace lodestone {
 
 struct TilesetTile {
@@ -29,6 +31,8 @@ struct Tileset {
   glm::dvec3 origin{0.0};  // in the source's coordinates if the writer told it, else the root's transform
 };
 
+constexpr std::uint64_t most_tileset_bytes = 256ULL << 20;
+
 // Boxes, spheres (as the box around them). Errors: BadData for what is missing, out of range, or leaves the folder.
 [[nodiscard]] Result<Tileset> read_tileset(const std::filesystem::path& file);
 [[nodiscard]] Result<Tileset> parse_tileset(std::span<const std::uint8_t> bytes, const std::string& name);
@@ -40,6 +44,7 @@ struct LoadedTile {
 // glb or b3dm.
 [[nodiscard]] Result<Mesh> parse_tile(std::span<const std::uint8_t> bytes, const std::filesystem::path& file,
                                       const ReadOptions& options);
-[[nodiscard]] Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures);
+[[nodiscard]] Result<LoadedTile> read_tile(const Tileset& tileset, std::uint32_t tile, LoadTextures textures,
+                                           TileCache* cache = nullptr);
 
 }  // namespace lodestone

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
+#define XXH_INLINE_ALL  // header only
 #include <lodestone/tile_loader.h>
+
+#include <xxhash.h>
 
 #include <algorithm>
 
+#include "tiles3d/fetch.h"
 #include "tiles3d/read_tileset.h"
 #include "tiles3d/tileset_json.h"
 
@@ -12,14 +16,33 @@ struct TilePyramid::Content {
   Tileset tileset;
   LodGraph graph;
   std::vector<std::uint32_t> tile_of_node;
+  std::unique_ptr<TileCache> cache;  // has a lock of its own
 };
+
+namespace {
+
+// Where a tileset lies and what it says: another build has other boxes or errors, or at least another build.json.
+std::uint64_t source_of(const std::filesystem::path& tileset_json, std::span<const std::uint8_t> text) {
+  const std::string place = is_address(tileset_json)
+                                ? tileset_json.string()
+                                : std::filesystem::absolute(tileset_json).lexically_normal().string();
+  std::uint64_t hash = XXH64(text.data(), text.size(), XXH64(place.data(), place.size(), 0));
+  const auto build = fetch(tileset_json.parent_path() / "build.json", 1U << 16);
+  return build ? XXH64(build->data(), build->size(), hash) : hash;
+}
+
+}  // namespace
 
 TilePyramid::TilePyramid() = default;
 TilePyramid::~TilePyramid() = default;
 
-Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesystem::path& tileset_json) {
-  auto tileset = read_tileset(tileset_json);
+Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesystem::path& tileset_json,
+                                                             const std::optional<TileCacheOptions>& cache) {
+  const auto text = fetch(tileset_json, most_tileset_bytes);
+  if (!text) return text.error();
+  auto tileset = parse_tileset(*text, tileset_json.string());
   if (!tileset) return tileset.error();
+  tileset->folder = tileset_json.parent_path();
   std::vector<GroupDraft> groups;
   std::vector<NodeDraft> nodes;
   std::vector<GroupId> group_of(tileset->tiles.size(), none);
@@ -40,7 +63,12 @@ Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesyst
   if (!assembled) return Error{assembled.error().code, assembled.error().message, tileset_json.string()};
   std::shared_ptr<TilePyramid> out{new TilePyramid};
   out->content_ = std::make_unique<Content>(
-      Content{std::move(*tileset), std::move(assembled->graph), std::move(assembled->node_draft)});
+      Content{std::move(*tileset), std::move(assembled->graph), std::move(assembled->node_draft), nullptr});
+  if (cache) {
+    auto opened = TileCache::open(*cache, source_of(tileset_json, *text));
+    if (!opened) return opened.error();
+    out->content_->cache = std::move(*opened);
+  }
   return std::shared_ptr<const TilePyramid>{std::move(out)};
 }
 
@@ -51,8 +79,12 @@ const std::string& TilePyramid::name(NodeId tile) const noexcept {
   return content_->tileset.tiles[content_->tile_of_node[tile]].uri;
 }
 
+TileCacheStatus TilePyramid::cache_status() const {
+  return content_->cache ? content_->cache->status() : TileCacheStatus{};
+}
+
 Result<Mesh> TilePyramid::load(NodeId tile, LoadTextures textures) const {
-  auto loaded = read_tile(content_->tileset, content_->tile_of_node[tile], textures);
+  auto loaded = read_tile(content_->tileset, content_->tile_of_node[tile], textures, content_->cache.get());
   if (!loaded) return loaded.error();
   return std::move(loaded->mesh);
 }
