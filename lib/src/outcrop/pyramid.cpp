@@ -207,7 +207,8 @@ Status OutcropBuilder::simplify_once() {
   mark_tiles();
   EdgeCollapseOptions collapse;
   collapse.target_triangles = std::max(1U, static_cast<std::uint32_t>(mesh_.triangle_count() * ratio_));
-  collapse.sharpness_power = 1.0;
+  collapse.uv_weight = 0.2;
+  collapse.sharpness_power = 2.0;
   auto simplified = simplify(mesh_, collapse, context_);
   if (!simplified) return simplified.error();
   mesh_ = std::move(simplified->mesh);
