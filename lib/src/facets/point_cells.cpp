@@ -5,7 +5,7 @@ namespace lodestone::facets {
 namespace {
 
 constexpr float cell_m = 0.5F;
-constexpr float most_cells = 96.0F;  // along the longest side
+constexpr float most_cells = 256.0F;  // along the longest side
 
 }  // namespace
 

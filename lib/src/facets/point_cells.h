@@ -19,6 +19,9 @@ class PointCells {
       low = glm::min(low, p);
       high = glm::max(high, p);
     }
+    [[nodiscard]] bool contains(const glm::vec3& p) const noexcept {
+      return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+    }
   };
 
   explicit PointCells(const FacetMesh& mesh);
@@ -27,11 +30,13 @@ class PointCells {
   void update(const std::vector<FaceId>& changed);
   [[nodiscard]] std::uint64_t last_change(const Box& box) const;
 
-  // Calls visit(point) for all points in the cells that the box touches.
+  // Calls visit(point) for all points in the box that were there or near at the last update.
   template <class Visit>
   void visit_points(const Box& box, Visit visit) const {
     visit_cells(box, [&](std::size_t cell) {
-      for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) visit(points_[i]);
+      for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
+        if (box.contains(mesh_.place[points_[i]])) visit(points_[i]);
+      }
     });
   }
 
