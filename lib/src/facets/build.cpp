@@ -125,7 +125,7 @@ void Builder::drop_interior() {
     if (seen[s] != 0) continue;
     const std::vector<FaceId> faces = mesh_.surface_faces[s];
     report_.interior_faces += static_cast<std::uint32_t>(faces.size());
-    vanish(mesh_, faces, 0.0, log_);
+    vanish(mesh_, faces, Going::Still, 0.0, log_);
   }
 }
 
@@ -305,7 +305,7 @@ void Builder::vanish_parts(double price) {
       leant_upon[p] = 1;
       mesh_.deviation_m[p] = std::max(mesh_.deviation_m[p], static_cast<float>(part.error_m));
     }
-    vanish(mesh_, part.faces, part.error_m, log_);
+    vanish(mesh_, part.faces, Going::Shrinking, part.error_m, log_);
     ++report_.parts_vanished;
   }
 }

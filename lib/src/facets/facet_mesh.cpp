@@ -334,7 +334,23 @@ void apply(FacetMesh& mesh, Moved& moved, double error_m, progressive::EditLog& 
   Editor{mesh, moved, log}.run(error_m);
 }
 
-void vanish(FacetMesh& mesh, std::span<const FaceId> faces, double error_m, progressive::EditLog& log) {
+namespace {
+
+// The vertex nearest to the middle of all.
+VertexId middle_one(const FacetMesh& mesh, std::span<const VertexId> vertices) {
+  glm::dvec3 middle{0.0};
+  for (const VertexId v : vertices) middle += glm::dvec3{mesh.values.positions[v]};
+  middle /= static_cast<double>(vertices.size());
+  const auto away = [&](VertexId v) {
+    const glm::dvec3 d = glm::dvec3{mesh.values.positions[v]} - middle;
+    return glm::dot(d, d);
+  };
+  return *std::min_element(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) { return away(a) < away(b); });
+}
+
+}  // namespace
+
+void vanish(FacetMesh& mesh, std::span<const FaceId> faces, Going going, double error_m, progressive::EditLog& log) {
   log.begin(static_cast<float>(error_m));
   std::vector<VertexId> vertices;
   mesh.touched.insert(mesh.touched.end(), faces.begin(), faces.end());
@@ -351,7 +367,8 @@ void vanish(FacetMesh& mesh, std::span<const FaceId> faces, double error_m, prog
     }
   }
   std::sort(vertices.begin(), vertices.end());
-  for (const VertexId v : vertices) log.remove_vertex(v, none);
+  const VertexId onto = going == Going::Shrinking && !vertices.empty() ? middle_one(mesh, vertices) : none;
+  for (const VertexId v : vertices) log.remove_vertex(v, onto);
   log.end();
 }
 

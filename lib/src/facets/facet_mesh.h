@@ -112,7 +112,11 @@ inline constexpr double line_height_m = 1e-4;
 // goes. Vertices keep the texture of the plane they lie in.
 void apply(FacetMesh& mesh, Moved& moved, double error_m, progressive::EditLog& log);
 
+// How faces go that are taken away: what cannot be seen may go where it is, anything else shrinks into a point of its
+// own, or a colour would be gone from one picture to the next.
+enum class Going : std::uint8_t { Still, Shrinking };
+
 // Takes faces away, as one record.
-void vanish(FacetMesh& mesh, std::span<const FaceId> faces, double error_m, progressive::EditLog& log);
+void vanish(FacetMesh& mesh, std::span<const FaceId> faces, Going going, double error_m, progressive::EditLog& log);
 
 }  // namespace lodestone::facets

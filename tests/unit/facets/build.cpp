@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <lodestone/cursor.h>
 #include <lodestone/facet_shift.h>
 #include <lodestone/generate.h>
 #include <lodestone/metrics.h>
@@ -41,6 +42,37 @@ TEST_CASE("a bulge and a depression come into the wall in one record, at the dis
       CHECK(normal_deviation_rad(mesh, built->model->extract(level)) < 1e-6);
     }
   }
+}
+
+TEST_CASE("a detached part that goes has shrunk to nothing when it is gone") {
+  Mesh mesh;
+  mesh.materials.emplace_back();
+  mesh.vertices.positions = {{0, 0, 0}, {10, 0, 0}, {10, 0, 6}, {0, 0, 6}};
+  for (const glm::vec3& p : {glm::vec3{4, -0.02F, 2}, {4.3F, -0.02F, 2}, {4, -0.02F, 2.3F}}) {
+    mesh.vertices.positions.push_back(p);
+  }
+  mesh.indices = {0, 1, 2, 0, 2, 3, 4, 5, 6};
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  REQUIRE(built->report.parts_vanished == 1);
+  const Level whole = built->model->record_count();
+  Cursor cursor{built->model, {.morph_seconds = 1.0, .start_level = whole}};
+  const auto drawn_m2 = [&] {
+    double sum = 0.0;
+    for (const DrawRange& range : cursor.draws()) {
+      for (std::uint32_t i = range.first_index; i < range.first_index + range.index_count; i += 3) {
+        const auto at = [&](std::uint32_t k) { return glm::dvec3{cursor.positions()[cursor.index(i + k)]}; };
+        sum += 0.5 * glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
+      }
+    }
+    return sum;
+  };
+  CHECK(drawn_m2() == Approx(60.045));
+  cursor.set_target(Target::level(whole - 1));
+  double before = 0.0;
+  while (!cursor.step({}, 0.01).arrived) before = drawn_m2();
+  CHECK(before == Approx(60.0).margin(0.001));
+  CHECK(drawn_m2() == Approx(60.0).margin(1e-6));
 }
 
 TEST_CASE("every family of meshes builds, exact and monotone") {
