@@ -79,6 +79,7 @@ class Builder {
   bool shift_planes(double price);
   [[nodiscard]] std::uint64_t version_of(std::uint32_t surface) const;
   [[nodiscard]] double key_of_shift(Direction direction, double price);
+  [[nodiscard]] bool is_due(std::uint32_t surface, double price) const;
   [[nodiscard]] bool is_stale(std::uint32_t surface, std::uint64_t version, double price) const;
   void vanish_parts(double price);
   bool close_openings(double price);
@@ -229,7 +230,14 @@ double Builder::key_of_shift(Direction direction, double price) {
   return v.allowed && v.error_m <= options_.max_error_m ? v.key() : infinity;
 }
 
-// Whether what the shifts of the surface cost has to be found anew.
+// Whether what the shifts of the surface cost may have to be found anew.
+bool Builder::is_due(std::uint32_t surface, double price) const {
+  return std::any_of(known_.begin(), known_.end(), [&](const std::vector<Known>& known) {
+    return std::isinf(known[surface].key) || known[surface].key <= look_ahead * price;
+  });
+}
+
+// Of one that is due, whether they have.
 bool Builder::is_stale(std::uint32_t surface, std::uint64_t version, double price) const {
   return std::any_of(known_.begin(), known_.end(), [&](const std::vector<Known>& known) {
     const Known& k = known[surface];
@@ -247,6 +255,7 @@ bool Builder::shift_planes(double price) {
   std::vector<Offer> offers;
   planner_.begin_round();
   for (std::uint32_t s = 0; s < mesh_.surface_faces.size() && !context_.cancelled(); ++s) {
+    if (!is_due(s, price)) continue;
     std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
     if (mesh_.surface_faces[s].empty()) continue;
     const std::uint64_t version = version_of(s);

@@ -112,10 +112,10 @@ double Planner::next_event(double sign) const {
     for (const FaceId f : mesh_.faces_of[runner.point]) {
       for (const std::uint32_t q : mesh_.faces[f].point) {
         if (q == runner.point) continue;
-        const glm::dvec3 apart = mesh_.at(q) - mesh_.at(runner.point);
         const glm::dvec3 speed = speed_of(q) - runner.speed;
         const double speed2 = glm::dot(speed, speed);
         if (speed2 < 1e-6) continue;
+        const glm::dvec3 apart = mesh_.at(q) - mesh_.at(runner.point);
         const double way = -glm::dot(apart, speed) / speed2;
         const glm::dvec3 then = apart + way * speed;
         if (way * sign > least_way_m && glm::dot(then, then) < meet_m * meet_m) best = std::min(best, way * sign);
