@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A cluster graph from a mesh: how long, how full, how honest, and how fast cuts are found.
 //
-//     bench_clusters MESH [--threads N] [--errors] [--fly FRAMES] [--cut-loose]
+//     bench_clusters MESH [--threads N] [--errors] [--fly FRAMES] [--cut-loose] [--write FILE.lodg]
 //
 // Prints one JSON object. --fly: the cut follows a camera that flies in, at 4 pixels, while pictures are taken from one
 // place, so that what changes between two of them is the model alone; `pop` is the largest block difference (0 to 255)
@@ -164,7 +164,8 @@ void print_fly(const ClusterGraph& graph, std::uint32_t frames) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fputs("bench_clusters MESH [--threads N] [--errors] [--fly FRAMES] [--cut-loose]\n", stderr);
+    std::fputs("bench_clusters MESH [--threads N] [--errors] [--fly FRAMES] [--cut-loose] [--write FILE.lodg]\n",
+               stderr);
     return 1;
   }
   Context context;
@@ -172,9 +173,11 @@ int main(int argc, char** argv) {
   bool errors = false;
   bool loose = false;
   int frames = 0;
+  std::filesystem::path file;
   for (int i = 2; i < argc; ++i) {
     if (std::strcmp(argv[i], "--threads") == 0 && i + 1 < argc)
       context.max_workers = static_cast<unsigned>(std::atoi(argv[++i]));
+    if (std::strcmp(argv[i], "--write") == 0 && i + 1 < argc) file = argv[++i];
     if (std::strcmp(argv[i], "--errors") == 0) errors = true;
     if (std::strcmp(argv[i], "--cut-loose") == 0) loose = true;
     if (std::strcmp(argv[i], "--fly") == 0 && i + 1 < argc) frames = std::atoi(argv[++i]);
@@ -195,6 +198,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", to_line(graph.error()).c_str());
     return 2;
   }
+  if (!file.empty() && !write_cluster_graph(*graph, file).ok()) return 2;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   std::printf("{\"triangles\": %u, \"cpu_s\": %.2f, \"wall_s\": %.2f, \"peak_mb\": %ld, \"roots\": %zu, ",
