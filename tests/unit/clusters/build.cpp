@@ -6,6 +6,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <map>
+#include <set>
 
 #include "base/rng.h"
 #include "cut_support.h"
@@ -164,6 +165,50 @@ TEST_CASE("a group at the end of its morph lies where what it made lies") {
       found += there.contains(triangle) ? 1U : 0U;
     }
     REQUIRE(found >= there.size());
+  }
+}
+
+TEST_CASE("faces that cover nothing hold no group back") {
+  const auto graph =
+      build_cluster_graph(with_collapsed_faces(grid(60, 60)), {.max_triangles = 16, .group_clusters = 8});
+  REQUIRE(graph.ok());
+  REQUIRE(graph->roots.size() == 1);
+  for (std::size_t i = 1; i < graph->levels.size(); ++i) {
+    CHECK(graph->levels[i].triangles <= graph->levels[i - 1].triangles / 2 + 8);
+  }
+}
+
+TEST_CASE("what two groups use stays as it is: place, normal and uv") {
+  for (const Mesh& mesh : {sphere(60, 80), grid(60, 60)}) {
+    const auto graph = build_cluster_graph(mesh, {.max_triangles = 32, .group_clusters = 8});
+    REQUIRE(graph.ok());
+    const std::vector<GroupId> group_of = groups_of_nodes(graph->graph);
+    const VertexArrays& of = graph->vertices;
+    std::map<std::array<float, 4>, std::set<GroupId>> groups_at;  // by level and place
+    const auto key = [&](NodeId n, std::uint32_t v) {
+      const glm::vec3& p = of.positions[v];
+      return std::array<float, 4>{static_cast<float>(graph->clusters[n].level), p.x, p.y, p.z};
+    };
+    const auto for_each_vertex = [&](auto&& visit) {
+      for (NodeId n = 0; n < graph->clusters.size(); ++n) {
+        for (std::uint32_t v = graph->clusters[n].vertices.begin; v != graph->clusters[n].vertices.end; ++v)
+          visit(n, v);
+      }
+    };
+    for_each_vertex([&](NodeId n, std::uint32_t v) { groups_at[key(n, v)].insert(group_of[n]); });
+    std::size_t shared = 0;
+    std::size_t changed = 0;
+    for_each_vertex([&](NodeId n, std::uint32_t v) {
+      if (groups_at[key(n, v)].size() == 1) return;
+      const VertexId to = graph->morph_targets[v];
+      const bool same = of.positions[to] == of.positions[v] &&
+                        (of.normals.empty() || of.normals[to] == of.normals[v]) &&
+                        (of.uvs.empty() || of.uvs[to] == of.uvs[v]);
+      ++shared;
+      changed += same ? 0U : 1U;
+    });
+    CHECK(shared > 500);
+    CHECK(changed == 0);
   }
 }
 

@@ -40,7 +40,7 @@ Seen seen_of(const CutMorph& morph) {
 
 TEST_CASE(
     "after any jump of the camera groups come and go only at the end of a morph, without cracks, in bounded time") {
-  const auto graph = build_cluster_graph(grid(110, 110));
+  const auto graph = build_cluster_graph(grid(70, 70), {.max_triangles = 32, .group_clusters = 8});
   REQUIRE(graph.ok());
   const std::vector<std::uint8_t> border = true_border(*graph);
   constexpr double duration_s = 0.5;
