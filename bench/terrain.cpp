@@ -3,7 +3,10 @@
 // samples per second of processor time, triangles, true error. bench/terrain_delatin.mjs does the same with npm's
 // delatin.
 //
-//   bench_terrain N30E079.hgt [greedy|edge-collapse|random|grid|hierarchy|wlop]
+//   bench_terrain N30E079.hgt [greedy|edge-collapse|random|grid|hierarchy|wlop|table]
+//
+// `table`: Table 2 of Campos et al. 2020 on the first tile: all methods at about as many triangles as there.
+#include <lodestone/metrics.h>
 #include <lodestone/terrain.h>
 
 #include <cmath>
@@ -97,6 +100,74 @@ void bench(const std::vector<TileLattice>& tiles, double tolerance_m, TerrainMet
   std::fflush(stdout);
 }
 
+// In metres, as a plane: what is beside it on the globe is the same for all methods.
+double hausdorff_m(const Tin& tin, const TileLattice& lattice) {
+  constexpr glm::dvec2 spacing_m{80.0, 92.0};
+  const auto place = [&](double x, double y, double height_m) {
+    return glm::vec3{glm::dvec3{x * spacing_m.x, y * spacing_m.y, height_m}};
+  };
+  Mesh ours, posts;
+  for (const Tin::Vertex& v : tin.vertices) {
+    constexpr double unit = static_cast<double>(size) / quantized_max;
+    ours.vertices.positions.push_back(place(v.u * unit, v.v * unit, v.height_m));
+  }
+  ours.indices = tin.triangles;
+  constexpr std::uint32_t side = size + 1;
+  for (int y = 0; y <= size; ++y) {
+    for (int x = 0; x <= size; ++x)
+      posts.vertices.positions.push_back(place(x, y, static_cast<double>(lattice.at(x, y))));
+  }
+  for (std::uint32_t y = 0; y + 1 < side; ++y) {
+    for (std::uint32_t x = 0; x + 1 < side; ++x) {
+      const std::uint32_t a = y * side + x;
+      for (const std::uint32_t v : {a, a + 1, a + side + 1, a, a + side + 1, a + side}) posts.indices.push_back(v);
+    }
+  }
+  const auto distance = compare(posts, ours, {.samples = 1000});
+  return distance ? distance->hausdorff_m : -1.0;
+}
+
+void table(const TileLattice& lattice) {
+  constexpr double step_m = 0.25, tolerance_m = 180.0;
+  std::vector<Tin::Vertex> chain;
+  for (const Side side : all_sides) {
+    for (const auto& vertex : border_vertices(lattice, side, {tolerance_m, step_m, 1})) chain.push_back(vertex);
+  }
+  const auto row = [&](const char* name, auto make_tin) {
+    const double start = thread_seconds();
+    const Tin tin = make_tin();
+    const double seconds = thread_seconds() - start;
+    std::printf(
+        "{\"method\": \"%s\", \"seconds\": %.4f, \"vertices\": %zu, \"triangles\": %zu, \"true_error_m\": %.1f, "
+        "\"hausdorff_m\": %.1f}\n",
+        name, seconds, tin.vertices.size(), tin.triangles.size() / 3, measure(tin, lattice, tolerance_m).max_m,
+        hausdorff_m(tin, lattice));
+  };
+  const auto greedy = [&](double share) {
+    return greedy_insertion(lattice, chain, {.tolerance_m = share * tolerance_m, .step_m = step_m}).tin;
+  };
+  row("greedy", [&] { return greedy(1.0); });
+  row("edge collapse by error",
+      [&] { return collapse_edges(greedy(0.9), lattice, {.limit_m = tolerance_m + 0.5 * step_m, .step_m = step_m}); });
+  row("edge collapse to 2000 edges",
+      [&] { return collapse_edges(greedy(0.125), lattice, {.target_edges = 2000, .step_m = step_m}); });
+  for (const auto& [method, name] : methods) {
+    if (!is_point_set(method)) continue;
+    row(name, [&, chosen = method] {
+      const SampleOptions samples{.keep_ratio = 0.006,
+                                  .cell_posts = 12,
+                                  .cluster_posts = 300,
+                                  .surface_variation = 0.05,
+                                  .radius_posts = 26.0,
+                                  .iterations = 15,
+                                  .spacing_m = {80.0, 92.0}};
+      return point_set_tin(lattice, chain,
+                           {.method = chosen, .samples = samples, .tolerance_m = tolerance_m, .step_m = step_m})
+          .tin;
+    });
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -105,6 +176,10 @@ int main(int argc, char** argv) {
     return 1;
   }
   const std::vector<TileLattice> tiles = read_tiles(argv[1]);
+  if (argc == 3 && std::string{argv[2]} == "table") {
+    table(tiles.front());
+    return 0;
+  }
   for (const auto& [method, name] : methods) {
     if (argc == 3 && std::string{argv[2]} != name) continue;
     for (const double tolerance_m : {1.0, 5.0, 10.0, 40.0}) bench(tiles, tolerance_m, method, name);

@@ -295,9 +295,21 @@ class TinCollapse {
       if (area_of(at, vertices_[corners_[next_of(e)]], vertices_[corners_[prev_of(e)]]) <= 0) return false;
     }
     if (options_.target_edges > 0) return true;
+    if (!near_posts(at)) return false;
     return std::all_of(moving_.begin(), moving_.end(), [&](std::uint32_t e) {
       return within(at, vertices_[corners_[next_of(e)]], vertices_[corners_[prev_of(e)]], lattice_, options_.limit_m);
     });
+  }
+
+  // A vertex between posts is no farther from the surface through the four around it than a post may be from the TIN.
+  [[nodiscard]] bool near_posts(const Vertex& at) const {
+    constexpr double posts_per_unit = static_cast<double>(size) / quantized_max;
+    const int x = cell_of(at.u), y = cell_of(at.v);
+    const double east = at.u * posts_per_unit - x, north = at.v * posts_per_unit - y;
+    const auto row_m = [&](int row) {
+      return std::lerp(static_cast<double>(lattice_.at(x, row)), static_cast<double>(lattice_.at(x + 1, row)), east);
+    };
+    return std::fabs(at.height_m - std::lerp(row_m(y), row_m(y + 1), north)) <= options_.limit_m;
   }
 
   // Half edges that begin at a free vertex, but those of the two triangles at the edge to the other.
