@@ -72,7 +72,8 @@ struct TilesetReport {
 };
 
 /// Writes the pyramid of a mesh whose textures are referred to by path, encoded or decoded. One photograph per worker
-/// is in memory at a time; `Context::max_memory_bytes` limits how many workers may hold one. With `crs` known the root
+/// is in memory at a time; `Context::max_memory_bytes` limits how many workers may hold one, and is exceeded, with a
+/// warning, where the triangles alone need more (OutcropPyramid::build). With `crs` known the root
 /// transform places the outcrop on the globe, else it carries the origin. The same bytes come out for any number of
 /// workers. Errors: those of OutcropPyramid::build; BadData for a texture that cannot be decoded, by name; Unreadable
 /// for a full disk; BadArgument where `resume` meets a folder made from something else. A call that fails or is

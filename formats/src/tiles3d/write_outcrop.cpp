@@ -138,6 +138,7 @@ class OutcropWriter {
   }
   [[nodiscard]] bool photograph_is_done(std::uint32_t segment) const;
   void tile_finished(bool kept);
+  void warn_of_memory(std::uint32_t vertices);
   [[nodiscard]] Status finish();
 
   fs::path folder_;
@@ -411,6 +412,17 @@ unsigned OutcropWriter::photographs_at_once() const {
   return workers;
 }
 
+// Photographs can wait for each other, triangles cannot.
+void OutcropWriter::warn_of_memory(std::uint32_t vertices) {
+  constexpr double bytes_of_vertex = 500.0;  // while the levels are made
+  const double needed = bytes_of_vertex * vertices;
+  if (context_.max_memory_bytes == 0 || needed <= static_cast<double>(context_.max_memory_bytes)) return;
+  warnings_.push_back({"its triangles alone take about " +
+                           std::to_string(static_cast<std::uint64_t>(needed / 1e6) + 1) +
+                           " MB while levels are made, more than the limit on memory",
+                       folder_.string()});
+}
+
 Status OutcropWriter::finish() {
   if (Status status = write_tileset_json(*pyramid_, folder_ / "tileset.json", options_.version, warnings_); !status) {
     return status;
@@ -433,6 +445,7 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   for (Texture& texture : mesh.textures) texture = {.name = texture.name};
   report_.source_triangles = mesh.triangle_count();
   if (Status status = prepare_folder(signature(mesh, infos_, options_)); !status) return status.error();
+  warn_of_memory(mesh.vertex_count());
   timespec before{};
   timespec after{};
   ::clock_gettime(CLOCK_MONOTONIC, &before);

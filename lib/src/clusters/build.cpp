@@ -15,6 +15,7 @@
 #include "clusters/simplify_group.h"
 #include "clusters/split.h"
 #include "clusters/walk.h"
+#include "mesh/vertex_copy.h"
 #include "mesh/weld.h"
 
 namespace lodestone {
@@ -78,15 +79,7 @@ class Builder {
         v = number[v];
       }
     }
-    const auto pick = [&](const auto& from, auto& to) {
-      if (from.empty()) return;
-      to.reserve(order.size());
-      for (const VertexId v : order) to.push_back(from[v]);
-    };
-    pick(source_.vertices.positions, ground_.values.positions);
-    pick(source_.vertices.normals, ground_.values.normals);
-    pick(source_.vertices.uvs, ground_.values.uvs);
-    pick(source_.vertices.colors, ground_.values.colors);
+    ground_.values = gathered(source_.vertices, order);
   }
 
   void find_border() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Appending vertices that are copies or blends of others.
+// Vertices that are copies or blends of others.
 #pragma once
 
 #include <cmath>
@@ -26,6 +26,21 @@ inline VertexId append_vertex_copy(VertexArrays& vertices, VertexId v) {
   vertex_copy::append_copy(vertices.uvs, v);
   vertex_copy::append_copy(vertices.colors, v);
   return id;
+}
+
+// The vertices of a list, in its order.
+inline VertexArrays gathered(const VertexArrays& vertices, const std::vector<VertexId>& order) {
+  VertexArrays result;
+  const auto pick = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.reserve(order.size());
+    for (const VertexId v : order) to.push_back(from[v]);
+  };
+  pick(vertices.positions, result.positions);
+  pick(vertices.normals, result.normals);
+  pick(vertices.uvs, result.uvs);
+  pick(vertices.colors, result.colors);
+  return result;
 }
 
 // A vertex at `position` whose other attributes lie at share t of the way from vertex a to vertex b.

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/disjoint_sets.h"
+#include "mesh/vertex_copy.h"
 #include "outcrop/segments.h"
 
 namespace lodestone {
@@ -261,15 +262,8 @@ Mesh TileDraft::fill_mesh() {
     const std::uint32_t s = pyramid_.segment_of_material_[m];
     mesh.materials[m].texture = any && s != none && textured(s) ? 0 : none;
   }
-  const auto gather = [&](auto& to, const auto& from) {
-    if (from.empty()) return;
-    to.reserve(source_.size());
-    for (const VertexId v : source_) to.push_back(from[v]);
-  };
-  gather(mesh.vertices.positions, level_.vertices.positions);
-  gather(mesh.vertices.normals, level_.vertices.normals);
-  gather(mesh.vertices.colors, level_.vertices.colors);
-  if (any) mesh.vertices.uvs.assign(source_.size(), glm::vec2{0.0F});
+  mesh.vertices = gathered(level_.vertices, source_);
+  mesh.vertices.uvs.assign(any ? source_.size() : 0, glm::vec2{0.0F});
   for (VertexId v = 0; any && v < vertex_count(); ++v) {
     if (piece_[v] == none) continue;
     const TexturePiece& piece = texture_.pieces[piece_[v]];

@@ -52,6 +52,17 @@ TEST_CASE("A tileset holds the source, fits without a seam, and passes its own c
   CHECK(!fs::exists(folder / "work"));
 }
 
+TEST_CASE("A limit on memory that the triangles alone exceed is told") {
+  const fs::path folder = scratch_folder("tileset_memory");
+  const auto tight = write_outcrop(small_cliff(), folder, options(), {.max_memory_bytes = 1'000'000});
+  REQUIRE(tight);
+  REQUIRE(tight.warnings().size() == 1);
+  CHECK(tight.warnings().front().message.find(" MB while levels are made") != std::string::npos);
+  const auto enough = write_outcrop(small_cliff(), folder, options(), {.max_memory_bytes = 100'000'000});
+  REQUIRE(enough);
+  CHECK(enough.warnings().empty());
+}
+
 TEST_CASE("The check of a tileset finds what is wrong with it") {
   const fs::path folder = scratch_folder("tileset_faults");
   static_cast<void>(write(folder));
