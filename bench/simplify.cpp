@@ -134,6 +134,6 @@ int main(int argc, char** argv) {
     return 1;
   }
   const Mesh source = std::move(loaded->mesh);
-  const Mesh bare = bench::positions_only(source);
+  const Mesh bare = test::positions_only(source);
   for (const double ratio : {0.5, 0.2, 0.1, 0.02, 0.01}) measure(source, bare, ratio, samples);
 }

@@ -18,6 +18,8 @@
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
 
+#include "positions_only.h"
+
 namespace {
 
 using namespace lodestone;
@@ -34,12 +36,7 @@ std::vector<Mesh> read_buildings(const std::filesystem::path& folder) {
   for (const auto& file : files) {
     const auto loaded = read_mesh(file);
     if (!loaded.ok()) continue;
-    Mesh mesh;
-    mesh.materials.emplace_back();
-    mesh.vertices.positions = loaded->mesh.vertices.positions;
-    mesh.indices = loaded->mesh.indices;
-    merge_identical_vertices(mesh);
-    meshes.push_back(std::move(mesh));
+    meshes.push_back(test::positions_only(loaded->mesh));
   }
   std::stable_sort(meshes.begin(), meshes.end(),
                    [](const Mesh& a, const Mesh& b) { return a.triangle_count() > b.triangle_count(); });

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "bench_simplify_peers: %s\n", to_line(loaded.error()).c_str());
     return 2;
   }
-  const Mesh mesh = bench::positions_only(loaded->mesh);
+  const Mesh mesh = test::positions_only(loaded->mesh);
   for (const double kept : {0.5, 0.1, 0.01}) {
     const auto target = static_cast<std::uint32_t>(kept * mesh.triangle_count());
     std::printf("{\"kept\": %.2f", kept);

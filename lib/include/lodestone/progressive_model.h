@@ -101,10 +101,15 @@ struct LevelInfo {
   double error_m = 0.0;
 };
 
+namespace progressive {
+class ModelMaker;
+}
+
 class ProgressiveModel {
  public:
-  /// Takes data from a file or a builder. Replays the whole stack once and checks every index, count and error, so
-  /// that cursors need no checks. O(records). Errors: BadData with the record and what is wrong in it.
+  /// Takes data from a file or from a builder outside the library. Replays the whole stack once and checks every index,
+  /// count and error, so that cursors need no checks. O(records). Errors: BadData with the record and what is wrong in
+  /// it.
   [[nodiscard]] static Result<std::shared_ptr<const ProgressiveModel>> from_data(ModelData data);
 
   [[nodiscard]] const ModelData& data() const noexcept { return data_; }
@@ -141,6 +146,7 @@ class ProgressiveModel {
 
  private:
   friend class Cursor;
+  friend class progressive::ModelMaker;
   ProgressiveModel() = default;
 
   /// Counts at every 256th level, and where its edits begin: what info() needs to go on from there.

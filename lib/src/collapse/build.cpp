@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/edge_collapse.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "collapse/build_log.h"
 #include "collapse/engine.h"
 #include "progressive/recorder.h"
@@ -10,7 +13,11 @@ namespace {
 
 class LogSink final : public collapse::Sink {
  public:
-  explicit LogSink(const Mesh& source) : log_(value_words(source)) {}
+  LogSink(const Mesh& source, const EdgeCollapseOptions& options) : log_(value_words(source)) {
+    const std::size_t faces = source.triangle_count() - std::min(source.triangle_count(), options.target_triangles);
+    const bool most_go = options.max_error_m == std::numeric_limits<double>::infinity();
+    if (most_go) log_.reserve(faces / 2, options.placement != Placement::Subset);
+  }
 
   void record(const collapse::Edit& edit) override {
     const auto size = [](const auto& part) { return static_cast<std::uint32_t>(part.size()); };
@@ -35,7 +42,7 @@ class LogSink final : public collapse::Sink {
 
 progressive::EditLog collapse::collapse_log(const Mesh& source, const EdgeCollapseOptions& options,
                                             const Context& context, CollapseReport& report) {
-  LogSink sink{source};
+  LogSink sink{source, options};
   report = run(source, options, context, sink);
   return sink.take();
 }
@@ -46,9 +53,7 @@ Result<EdgeCollapseResult> build_by_edge_collapse(const Mesh& mesh, const EdgeCo
   EdgeCollapseResult result;
   progressive::EditLog log = collapse::collapse_log(mesh, options, context, result.report);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
-  ModelData data = progressive::record(mesh, std::move(log), "edge-collapse", context);
-  if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
-  auto model = ProgressiveModel::from_data(std::move(data));
+  auto model = progressive::record_model(mesh, std::move(log), "edge-collapse", context);
   if (!model.ok()) return model.error();
   result.model = std::move(model).value();
   return result;

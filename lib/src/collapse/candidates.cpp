@@ -5,6 +5,7 @@
 #include "collapse/candidates.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -20,7 +21,7 @@ namespace {
 // The other two points of the faces around one point, in the order of the faces.
 struct Around {
   std::vector<std::uint32_t> next, previous;
-  std::vector<glm::dvec3> normals;  // of the faces, twice their area long
+  std::vector<glm::dvec3> normals;  // of the faces, twice their area long, if sharpness counts
 };
 
 // Up to so many faces at a point its lists are searched as they are; longer ones are sorted first, or a hub of a fan
@@ -139,28 +140,37 @@ std::uint8_t add_inner_lines(const WorkingMesh& mesh, const LineRules& rules, st
   return flags;
 }
 
+// The same for up to `most` faces, in steps that do several neighbours at once.
+template <std::size_t most>
+bool closed_short_ring(const Around& around) {
+  const std::size_t count = around.next.size();
+  std::array<std::uint32_t, most> next{};
+  std::array<std::uint32_t, most> out{};
+  std::array<std::uint32_t, most> in{};
+  std::copy_n(around.next.data(), count, next.data());
+  for (std::size_t j = 0; j < count; ++j) {
+    const std::uint32_t a = around.next[j];
+    const std::uint32_t b = around.previous[j];
+    for (std::size_t i = 0; i < most; ++i) {
+      out[i] += next[i] == a ? 1U : 0U;
+      in[i] += next[i] == b ? 1U : 0U;
+    }
+  }
+  bool closed = true;
+  for (std::size_t i = 0; i < count; ++i) closed = closed && out[i] == 1 && in[i] == 1;
+  return closed;
+}
+
 // Whether each edge at the point has one face on either side: every neighbour comes next once and previous once.
 bool closed_ring(const Around& around) {
   const std::size_t count = around.next.size();
-  if (count > few_faces) {
-    std::vector<std::uint32_t> out = around.next;
-    std::vector<std::uint32_t> in = around.previous;
-    std::sort(out.begin(), out.end());
-    std::sort(in.begin(), in.end());
-    return out == in && std::adjacent_find(out.begin(), out.end()) == out.end();
-  }
-  const std::uint32_t* next = around.next.data();
-  const std::uint32_t* previous = around.previous.data();
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t out = 0;
-    std::uint32_t in = 0;
-    for (std::size_t j = 0; j < count; ++j) {
-      out += next[j] == next[i] ? 1U : 0U;
-      in += previous[j] == next[i] ? 1U : 0U;
-    }
-    if (out != 1 || in != 1) return false;
-  }
-  return true;
+  if (count <= 8) return closed_short_ring<8>(around);
+  if (count <= few_faces) return closed_short_ring<few_faces>(around);
+  std::vector<std::uint32_t> out = around.next;
+  std::vector<std::uint32_t> in = around.previous;
+  std::sort(out.begin(), out.end());
+  std::sort(in.begin(), in.end());
+  return out == in && std::adjacent_find(out.begin(), out.end()) == out.end();
 }
 
 // Based on: Ao et al. 2025, equation 4: angles between the normals around a point, weighted by area. Differs: it is
@@ -226,8 +236,8 @@ bool listed_once(std::uint32_t u, std::uint32_t v, std::uint8_t flags_of_both) {
 }
 
 template <Placement placement>
-void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Range points,
-              std::vector<Candidate>& edges, CostHistogram& histogram) {
+void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, std::vector<Candidate>& edges,
+              CostHistogram& histogram) {
   const Estimator estimator{mesh, quadrics};
   std::size_t kept = 0;
   for (const Candidate& c : edges) {
@@ -236,40 +246,76 @@ void estimate(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, 
     const auto key = std::bit_cast<std::uint32_t>(estimator.cost<placement>(c.u, c.v));
     histogram.add(key);
     edges[kept] = {key, std::min(c.u, c.v), std::max(c.u, c.v)};
-    kept += points.begin <= c.v && c.v < points.end ? 1U : 0U;
+    kept += ((mesh.flags[c.u] | mesh.flags[c.v]) & point_outer) == 0 ? 1U : 0U;
   }
   edges.resize(kept);
 }
 
-// Everything about one point; `around` is scratch.
-Symmetric3 sum_point(WorkingMesh& mesh, const LineRules& rules, std::uint32_t p, double sharp_cosine, Around& around) {
+// Lists what is around the point and sums its faces. Normals in float do for an estimate, and their sum of squares is
+// taken in double.
+Symmetric3 sum_faces(const WorkingMesh& mesh, std::uint32_t p, Around& around) {
   const std::uint32_t degree = mesh.first[p + 1] - mesh.first[p];
   around.next.resize(degree);
   around.previous.resize(degree);
-  around.normals.resize(degree);
-  // Normals in float do for an estimate, and their sum of squares is taken in double.
-  const glm::vec3 at{mesh.position[p]};
+  const glm::vec3* position = mesh.position.data();
+  const Face* faces = mesh.faces.data();
   const std::uint32_t* corners = mesh.corners.data() + mesh.first[p];
+  std::uint32_t* next = around.next.data();
+  std::uint32_t* previous = around.previous.data();
+  const glm::vec3 at{position[p]};
+  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;  // of the sum, kept in registers
   for (std::uint32_t i = 0; i != degree; ++i) {
     const std::uint32_t k = corners[i] & 3U;
-    const Face& f = mesh.faces[corners[i] >> 2U];
-    const std::uint32_t next = f.point[k == 2 ? 0 : k + 1];
-    const std::uint32_t previous = f.point[k == 0 ? 2 : k - 1];
-    around.next[i] = next;
-    around.previous[i] = previous;
-    around.normals[i] = glm::dvec3{glm::cross(mesh.position[next] - at, mesh.position[previous] - at)};
+    const Face& f = faces[corners[i] >> 2U];
+    next[i] = f.point[corner_after[k]];
+    previous[i] = f.point[corner_before[k]];
+    const glm::vec3 a = position[next[i]] - at;
+    const glm::vec3 b = position[previous[i]] - at;
+    const auto x = double{a.y * b.z - b.y * a.z};
+    const auto y = double{a.z * b.x - b.z * a.x};
+    const auto z = double{a.x * b.y - b.x * a.y};
+    xx += x * x;
+    xy += x * y;
+    xz += x * z;
+    yy += y * y;
+    yz += y * z;
+    zz += z * z;
   }
+  return {xx, xy, xz, yy, yz, zz};
+}
+
+// Twice the areas of the faces around.
+void list_normals(const WorkingMesh& mesh, std::uint32_t p, Around& around) {
+  const glm::vec3 at{mesh.position[p]};
+  around.normals.clear();
+  for (std::size_t i = 0; i < around.next.size(); ++i) {
+    around.normals.emplace_back(glm::cross(mesh.position[around.next[i]] - at, mesh.position[around.previous[i]] - at));
+  }
+}
+
+bool reaches_out(const Around& around, Range points) {
+  std::uint32_t outside = 0;
+  for (const std::uint32_t q : around.next) outside |= q - points.begin < points.size() ? 0U : 1U;
+  for (const std::uint32_t q : around.previous) outside |= q - points.begin < points.size() ? 0U : 1U;
+  return outside != 0;
+}
+
+// Everything about one point; `around` is scratch.
+Symmetric3 sum_point(WorkingMesh& mesh, const LineRules& rules, std::uint32_t p, double sharp_cosine, Range points,
+                     Around& around) {
+  Symmetric3 quadric = sum_faces(mesh, p, around);
   if (!mesh.sharpness.empty()) {
+    list_normals(mesh, p, around);
     mesh.sharpness[p] = static_cast<float>(std::pow(sharpness_of(around.normals), rules.options.sharpness_power));
+    quadric *= mesh.weight_at(p);
   }
-  Symmetric3 quadric;
-  const double root_of_weight = std::sqrt(mesh.weight_at(p));
-  for (const glm::dvec3& normal : around.normals) quadric.add_plane(normal * root_of_weight);
   std::uint8_t flags = mesh.flags[p] & point_frozen;
-  if (!closed_ring(around)) flags |= add_borders(mesh, around, glm::dvec3{at}, flags != 0, rules.weight, quadric);
+  const glm::dvec3 at{mesh.position[p]};
+  if (!closed_ring(around)) flags |= add_borders(mesh, around, at, flags != 0, rules.weight, quadric);
   const bool inner_lines = rules.looks_matter || sharp_cosine > -1.0;
   if (inner_lines) flags |= add_inner_lines(mesh, rules, p, sharp_cosine, around, quadric);
   if (rules.options.borders == Borders::Lock && (flags & point_border) != 0) flags |= point_frozen;
+  if (reaches_out(around, points)) flags |= point_outer;
   mesh.flags[p] = flags;
   return quadric;
 }
@@ -282,7 +328,7 @@ void sum_quadrics(WorkingMesh& mesh, const LineRules& rules, Range points, std::
   edges.reserve(3 * std::size_t{points.size()} + points.size() / 8);
   Around around;
   for (std::uint32_t p = points.begin; p != points.end; ++p) {
-    quadrics[p] = sum_point(mesh, rules, p, sharp_cosine, around);
+    quadrics[p] = sum_point(mesh, rules, p, sharp_cosine, points, around);
     for (const std::uint32_t next : around.next) {
       if (listed_once(p, next, mesh.flags[p])) edges.push_back({0, p, next});
     }
@@ -301,18 +347,18 @@ std::uint32_t CostHistogram::limit(double share) const noexcept {
   return bin == counts_.size() ? none : bin << shift;
 }
 
-void estimate_costs(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement, Range points,
+void estimate_costs(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement,
                     std::vector<Candidate>& edges, CostHistogram& histogram) {
   switch (placement) {
     case Placement::Optimal:
-      return estimate<Placement::Optimal>(mesh, quadrics, points, edges, histogram);
+      return estimate<Placement::Optimal>(mesh, quadrics, edges, histogram);
     case Placement::OnEdge:
-      return estimate<Placement::OnEdge>(mesh, quadrics, points, edges, histogram);
+      return estimate<Placement::OnEdge>(mesh, quadrics, edges, histogram);
     case Placement::Midpoint:
-      return estimate<Placement::Midpoint>(mesh, quadrics, points, edges, histogram);
+      return estimate<Placement::Midpoint>(mesh, quadrics, edges, histogram);
     case Placement::EndPoint:
     case Placement::Subset:
-      return estimate<Placement::Subset>(mesh, quadrics, points, edges, histogram);
+      return estimate<Placement::Subset>(mesh, quadrics, edges, histogram);
   }
 }
 

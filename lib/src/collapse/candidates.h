@@ -44,8 +44,8 @@ class CostHistogram {
 };
 
 // Estimates and counts the edges that sum_quadrics() listed for the range, once it is done for all, and drops those
-// that can never collapse here: both ends frozen, or the other end outside the range.
-void estimate_costs(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement, Range points,
+// that can never collapse here: both ends frozen, or a neighbour of either outside the range.
+void estimate_costs(const WorkingMesh& mesh, const std::vector<Symmetric3>& quadrics, Placement placement,
                     std::vector<Candidate>& edges, CostHistogram& histogram);
 
 }  // namespace lodestone::collapse

@@ -18,7 +18,7 @@ Refusal Collapser::attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key, 
   if (((mesh.flags[u] | mesh.flags[v]) & point_locked) != 0) return Refusal::Busy;
   const std::uint32_t faces = mesh.first[u + 1] - mesh.first[u] + mesh.first[v + 1] - mesh.first[v];
   if (faces > most_star_faces) return Refusal::Crowded;
-  if (!gather_star(mesh, u, v, region_, star_)) return Refusal::Outside;
+  gather_star(mesh, u, v, star_);
   if (star_.shared == 0) return Refusal::Busy;  // an earlier collapse took the faces between
   if (const Refusal refusal = check_topology(); refusal != Refusal::None) return refusal;
   if (const Refusal refusal = choose_ends(); refusal != Refusal::None) return refusal;

@@ -14,8 +14,8 @@
 namespace lodestone::collapse {
 
 // Why an edge did not collapse.
-enum class Refusal : std::uint8_t { None, Busy, Outside, Border, Flip, Link, Frozen, Cost, Crowded };
-inline constexpr std::size_t refusal_count = 9;
+enum class Refusal : std::uint8_t { None, Busy, Border, Flip, Link, Frozen, Cost, Crowded };
+inline constexpr std::size_t refusal_count = 8;
 
 // What all regions of a pass share.
 struct PassState {
@@ -33,11 +33,12 @@ struct PassState {
   std::vector<std::uint32_t> last_key;  // per point: key of the last record that touched it
 };
 
-// Works on the points of one region only; regions are disjoint, so several may run at once.
+// Works on the points of one region only, as long as no edge has an outer end; regions are disjoint, so several may
+// run at once.
 class Collapser {
  public:
-  Collapser(PassState& state, Range region, PassLog& log)
-      : state_(state), region_(region), log_(log), wedges_(state.mesh, state.options, state.diagonal_m) {}
+  Collapser(PassState& state, PassLog& log)
+      : state_(state), log_(log), wedges_(state.mesh, state.options, state.diagonal_m) {}
 
   // `key` orders the record in the log; a later record that depends on it gets at least the same key.
   Refusal attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key, double cost_limit);
@@ -74,7 +75,6 @@ class Collapser {
   [[nodiscard]] float error_m() const;
 
   PassState& state_;
-  Range region_;
   PassLog& log_;
   Wedges wedges_;
   Star star_;

@@ -131,7 +131,7 @@ void Engine::sum_all() {
 std::uint32_t Engine::estimate_all(double share) {
   for_each_region([&](Region& region) {
     region.costs = CostHistogram{};
-    estimate_costs(mesh_, quadrics_, options_.placement, region.points, region.edges, region.costs);
+    estimate_costs(mesh_, quadrics_, options_.placement, region.edges, region.costs);
   });
   CostHistogram costs;
   for (const Region& region : regions_) costs.add(region.costs);
@@ -157,7 +157,7 @@ void Engine::collapse_region(Region& region, PassState& state) const {
   } else {
     coarse_sort(region.edges);
   }
-  Collapser collapser{state, region.points, region.log};
+  Collapser collapser{state, region.log};
   // Edges whose exact cost is above the estimate wait until their turn.
   using Later = std::pair<double, std::size_t>;
   std::priority_queue<Later, std::vector<Later>, std::greater<>> later;

@@ -23,16 +23,20 @@ struct Part {
 
 class Search {
  public:
-  explicit Search(WorkingMesh& mesh) : mesh_(mesh), bvh_(mesh.position, indices_of(mesh)) {}
+  explicit Search(const WorkingMesh& mesh) : mesh_(mesh), bvh_(mesh.position, indices_of(mesh)) {
+    part_of_.reserve(mesh.faces.size());
+    for (const Face& f : mesh.faces) part_of_.push_back(mesh.part[f.point[0]]);
+  }
 
   // The distance of the part from the faces of other parts, at its corners and the middles of its faces.
   void measure(Part& part, double limit_m) const {
     double distance = 0.0;
     double deviation = 0.0;
+    std::uint32_t hint = none;  // what is nearest to one place of a part is nearly so to the next
     const auto look = [&](const glm::dvec3& at) {
-      const auto found = bvh_.nearest_of(at, limit_m, [&](FaceId f) {
-        return mesh_.faces[f].id != none && mesh_.part[mesh_.faces[f].point[0]] != part.id;
-      });
+      const auto found = bvh_.nearest_of(
+          at, limit_m, [&](FaceId f) { return part_of_[f] != part.id; }, hint);
+      hint = found.slot;
       distance = std::max(
           distance, found.face == none ? std::numeric_limits<double>::infinity() : std::sqrt(found.squared_distance));
       if (found.face != none) part.nearest.push_back(found.face);
@@ -62,8 +66,9 @@ class Search {
     for (const Face& f : mesh.faces) indices.insert(indices.end(), f.point.begin(), f.point.end());
     return indices;
   }
-  WorkingMesh& mesh_;
+  const WorkingMesh& mesh_;
   TriangleBvh bvh_;
+  std::vector<std::uint32_t> part_of_;  // per face
 };
 
 // Parts of few faces, the part with most faces never among them.

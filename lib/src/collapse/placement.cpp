@@ -58,20 +58,18 @@ glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {
 
 StarQuadric sum_star(const Star& star, double weight_of_lines, double weight_of_u, double weight_of_v) {
   StarQuadric sum;
-  const double root_u = std::sqrt(weight_of_u);
-  const double root_v = std::sqrt(weight_of_v);
-  const double root_both = std::sqrt(0.5 * (weight_of_u + weight_of_v));
+  const double weight_of_both = 0.5 * (weight_of_u + weight_of_v);
   for (const StarFace& f : star.faces) {
-    const double root = f.side == Side::Both ? root_both : (f.side == Side::V ? root_v : root_u);
-    const glm::dvec3 plane = f.normal * root;
-    sum.a.add_plane(plane);
-    sum.weight += glm::dot(plane, plane);
+    const double weight = f.side == Side::Both ? weight_of_both : (f.side == Side::V ? weight_of_v : weight_of_u);
+    const glm::dvec3 plane = f.normal * weight;
+    sum.a.add_plane(f.normal, weight);
+    sum.weight += glm::dot(plane, f.normal);
     sum.volume_normal += f.normal;
     if (f.side != Side::V) continue;
-    const double t = glm::dot(plane, star.e);
+    const double t = glm::dot(f.normal, star.e);
     sum.b += plane * t;
-    sum.c += t * t;
-    sum.volume += glm::dot(f.normal, star.e);
+    sum.c += weight * t * t;
+    sum.volume += t;
   }
   for (const StarLine& line : star.lines) {
     const double length2 = glm::dot(line.direction, line.direction);

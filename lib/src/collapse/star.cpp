@@ -4,8 +4,6 @@
 namespace lodestone::collapse {
 namespace {
 
-bool inside(Range region, std::uint32_t p) { return p - region.begin < region.end - region.begin; }
-
 // Most of the time here is waiting for faces, so all are asked for before the first is looked at. Inlined because a
 // compiler may take a call that only fetches for one without effect.
 [[gnu::always_inline]] inline void fetch_faces(const WorkingMesh& mesh, std::uint32_t point) {
@@ -15,7 +13,7 @@ bool inside(Range region, std::uint32_t p) { return p - region.begin < region.en
 }
 
 // Adds the faces at one end; those on the edge only when seen from u.
-bool add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Range region, Star& star) {
+void add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Star& star) {
   const glm::dvec3 origin{mesh.position[star.u]};
   const std::uint32_t far = is_u ? star.v : star.u;
   const glm::dvec3 at_near = is_u ? glm::dvec3{0.0} : star.e;
@@ -24,23 +22,21 @@ bool add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Range reg
     const std::uint32_t k = mesh.corners[i] & 3U;
     const Face& f = mesh.faces[index];
     if (f.id == none) continue;
-    const std::uint32_t a = f.point[k == 2 ? 0 : k + 1];
-    const std::uint32_t b = f.point[k == 0 ? 2 : k - 1];
+    const std::uint32_t a = f.point[corner_after[k]];
+    const std::uint32_t b = f.point[corner_before[k]];
     const bool shared = a == far || b == far;
     if (shared && !is_u) continue;
-    if (!inside(region, a) || !inside(region, b)) return false;
     star.shared += shared ? 1U : 0U;
     const glm::dvec3 at_a = glm::dvec3{mesh.position[a]} - origin;
     const glm::dvec3 at_b = glm::dvec3{mesh.position[b]} - origin;
     const Side side = shared ? Side::Both : is_u ? Side::U : Side::V;
     star.faces.emplace_back(index, k, a, b, side, at_a, at_b, glm::cross(at_a - at_near, at_b - at_near));
   }
-  return true;
 }
 
 }  // namespace
 
-bool gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Range region, Star& star) {
+void gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Star& star) {
   star.u = u;
   star.v = v;
   star.e = glm::dvec3{mesh.position[v]} - glm::dvec3{mesh.position[u]};
@@ -50,11 +46,10 @@ bool gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Rang
   star.plain = ((mesh.flags[u] | mesh.flags[v]) & (point_border | point_complex | point_line)) == 0;
   fetch_faces(mesh, u);
   fetch_faces(mesh, v);
-  if (!add_faces(mesh, u, true, region, star)) return false;
+  add_faces(mesh, u, true, star);
   star.faces_of_u = static_cast<std::uint32_t>(star.faces.size());
-  if (!add_faces(mesh, v, false, region, star)) return false;
+  add_faces(mesh, v, false, star);
   star.faces_of_v = static_cast<std::uint32_t>(star.faces.size()) - star.faces_of_u + star.shared;
-  return true;
 }
 
 }  // namespace lodestone::collapse

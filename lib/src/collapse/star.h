@@ -45,7 +45,7 @@ struct Star {
   bool plain = false;  // closed manifold rings at both ends, no lines
 };
 
-// Fills `star` for the edge; false if a point of its ring lies outside [begin, end).
-bool gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Range region, Star& star);
+// Fills `star` for the edge.
+void gather_star(const WorkingMesh& mesh, std::uint32_t u, std::uint32_t v, Star& star);
 
 }  // namespace lodestone::collapse

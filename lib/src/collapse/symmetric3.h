@@ -22,6 +22,15 @@ struct Symmetric3 {
     zz += o.zz;
     return *this;
   }
+  Symmetric3& operator*=(double s) noexcept {
+    xx *= s;
+    xy *= s;
+    xz *= s;
+    yy *= s;
+    yz *= s;
+    zz *= s;
+    return *this;
+  }
   friend Symmetric3 operator+(Symmetric3 a, const Symmetric3& b) noexcept { return a += b; }
 
   // Adds weight * n n^T: squared distance from the plane with normal n, times weight * |n|^2.

@@ -115,8 +115,8 @@ void Wedges::predict(const Star& star, const Choice& choice) {
   const VertexArrays& values = mesh_.values;
   for (const StarFace& f : star.faces) {
     const Face& face = mesh_.faces[f.index];
-    const std::array<VertexId, 3> corners{mesh_.vertex_of(face, f.k), mesh_.vertex_of(face, f.k == 2 ? 0 : f.k + 1),
-                                          mesh_.vertex_of(face, f.k == 0 ? 2 : f.k - 1)};
+    const std::array<VertexId, 3> corners{mesh_.vertex_of(face, f.k), mesh_.vertex_of(face, corner_after[f.k]),
+                                          mesh_.vertex_of(face, corner_before[f.k])};
     Group& group =
         group_of(target_of(f.side == Side::Both ? mesh_.vertex_of(face, corner_at(face, choice.gone)) : corners[0]));
     group.of_gone = group.of_gone || (group.vertex == corners[0] && f.side == gone_side);
@@ -166,8 +166,8 @@ double Wedges::residual(const Star& star, const Choice& choice) {
     const double square = glm::dot(f.normal, f.normal);
     if (square <= 0.0) continue;
     const Face& face = mesh_.faces[f.index];
-    const std::array<VertexId, 3> corners{mesh_.vertex_of(face, f.k), mesh_.vertex_of(face, f.k == 2 ? 0 : f.k + 1),
-                                          mesh_.vertex_of(face, f.k == 0 ? 2 : f.k - 1)};
+    const std::array<VertexId, 3> corners{mesh_.vertex_of(face, f.k), mesh_.vertex_of(face, corner_after[f.k]),
+                                          mesh_.vertex_of(face, corner_before[f.k])};
     const Group& group =
         group_of(target_of(f.side == Side::Both ? mesh_.vertex_of(face, corner_at(face, choice.gone)) : corners[0]));
     const glm::dvec3 weights = spread_weights(f, star.e, choice.relative) / square;
@@ -189,8 +189,9 @@ double Wedges::residual(const Star& star, const Choice& choice) {
 }
 
 double Wedges::plan(const Star& star, const Choice& choice) {
-  make_pairs(star, choice);
   groups_.clear();
+  if (!mesh_.has_seams() && !has_looks()) return 0.0;
+  make_pairs(star, choice);
   if (mesh_.has_seams() || (has_looks() && (steered() || choice.moves))) predict(star, choice);
   return steered() ? residual(star, choice) : 0.0;
 }

@@ -24,7 +24,13 @@ enum PointFlag : std::uint8_t {
   point_locked = 16,  // taken part in a collapse of this pass
   point_sharp = 32,   // on a sharp edge that passes through: may only go along it
   point_corner = 64,  // where sharp edges end or meet: stays
+  point_outer = 128,  // a neighbour lies outside the region of this pass
 };
+
+// The corner that follows corner k of a face, and the one before it. Tables, because k is as good as random and a
+// branch on it would be guessed wrong.
+inline constexpr std::array<std::uint32_t, 4> corner_after{1, 2, 0, 0};
+inline constexpr std::array<std::uint32_t, 4> corner_before{2, 0, 1, 0};
 
 [[nodiscard]] inline std::uint32_t corner_at(const Face& f, std::uint32_t point) noexcept {
   return f.point[0] == point ? 0 : f.point[1] == point ? 1 : 2;

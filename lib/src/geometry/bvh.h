@@ -46,12 +46,13 @@ class TriangleBvh {
   }
 
   // Nearest triangle among those for which wanted(face) holds and that lie nearer than `limit`; face `none` if there is
-  // none.
+  // none. `hint` as above.
   template <class Wanted>
-  [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted) const {
+  [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted, std::uint32_t hint = none) const {
     Nearest best;
     best.squared_distance = limit * limit;
     if (nodes_.empty()) return best;
+    if (hint != none && wanted(faces_[hint])) consider(p, hint, best);
     descend(
         p, [&] { return best.squared_distance; },
         [&](std::uint32_t slot) {

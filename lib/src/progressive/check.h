@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The door: nothing but data that passed here is ever played.
+// The door: nothing but data that passed here, or that a builder of ours made, is ever played.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <lodestone/progressive_model.h>
@@ -22,5 +23,9 @@ inline constexpr std::uint32_t checkpoint_spacing = 256;
 // Replays the stack, checking every count, index, value and error before it is used. Never reads outside the arrays,
 // whatever they hold. O(records + slots).
 [[nodiscard]] Result<Replay> check(const ModelData& data);
+
+// A model of what the recorder just made of a valid mesh with these bounds and finite values. Its records are counted,
+// not replayed: that check() finds nothing is asserted only, because a replay takes as long as recording.
+[[nodiscard]] std::shared_ptr<const ProgressiveModel> trusted_model(ModelData data, const Box& bounds);
 
 }  // namespace lodestone::progressive

@@ -42,6 +42,26 @@ void EditLog::append(const EditRun& run) {
   }
 }
 
+void EditLog::reserve(std::size_t records, bool moving) {
+  records_.reserve(records);
+  faces_.reserve(2 * records);
+  vertices_.reserve(records);
+  corners_.reserve(4 * records);
+  if (!moving) return;
+  moved_.reserve(records);
+  values_.reserve(value_words_ * records);
+}
+
+bool EditLog::finite(const VertexArrays& arrays) const {
+  const std::uint32_t floats = value_words_ - (arrays.colors.empty() ? 0U : 1U);  // a colour comes last
+  constexpr std::uint32_t exponent = 0x7F80'0000U;
+  bool all = true;
+  for (std::size_t i = 0; i < values_.size(); i += value_words_) {
+    for (std::size_t k = i; k < i + floats; ++k) all = all && (values_[k] & exponent) != exponent;
+  }
+  return all;
+}
+
 void EditLog::join_from(std::uint32_t first) {
   if (first + 1 >= record_count()) return;
   const RecordEnds before = first == 0 ? RecordEnds{} : records_[first - 1];

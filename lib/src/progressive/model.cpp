@@ -2,6 +2,7 @@
 #include <lodestone/progressive_model.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include <lodestone/cursor.h>
 
@@ -15,23 +16,46 @@ using progressive::StackPosition;
 
 std::uint32_t ModelData::value_words() const noexcept { return progressive::value_words(vertices); }
 
-Result<std::shared_ptr<const ProgressiveModel>> ProgressiveModel::from_data(ModelData data) {
-  auto replay = progressive::check(data);
-  if (!replay) return replay.error();
-  std::shared_ptr<ProgressiveModel> model{new ProgressiveModel};
-  model->data_ = std::move(data);
-  model->data_.shapes.shrink_to_fit();
-  model->data_.fan_corners.shrink_to_fit();
-  model->data_.fan_materials.shrink_to_fit();
-  model->data_.edits.shrink_to_fit();
-  model->data_.value_xor.shrink_to_fit();
-  model->data_.errors.shrink_to_fit();
-  for (const StackPosition& at : replay->checkpoints) {
-    model->checkpoints_.push_back({at.edit_word, at.vertices, at.triangles});
+class progressive::ModelMaker {
+ public:
+  static std::shared_ptr<const ProgressiveModel> make(ModelData data, const Replay& replay) {
+    std::shared_ptr<ProgressiveModel> model{new ProgressiveModel};
+    model->data_ = std::move(data);
+    model->data_.shapes.shrink_to_fit();
+    model->data_.fan_corners.shrink_to_fit();
+    model->data_.fan_materials.shrink_to_fit();
+    model->data_.edits.shrink_to_fit();
+    model->data_.value_xor.shrink_to_fit();
+    model->data_.errors.shrink_to_fit();
+    model->checkpoints_.reserve(replay.checkpoints.size());
+    for (const StackPosition& at : replay.checkpoints) {
+      model->checkpoints_.push_back({at.edit_word, at.vertices, at.triangles});
+    }
+    model->finest_triangles_ = replay.end.triangles;
+    model->bounds_ = replay.bounds;
+    return model;
   }
-  model->finest_triangles_ = replay->end.triangles;
-  model->bounds_ = replay->bounds;
-  return std::shared_ptr<const ProgressiveModel>{std::move(model)};
+};
+
+Result<std::shared_ptr<const ProgressiveModel>> ProgressiveModel::from_data(ModelData data) {
+  const auto replay = progressive::check(data);
+  if (!replay) return replay.error();
+  return progressive::ModelMaker::make(std::move(data), *replay);
+}
+
+std::shared_ptr<const ProgressiveModel> progressive::trusted_model(ModelData data, const Box& bounds) {
+  assert(check(data).ok());
+  Replay replay;
+  replay.bounds = bounds;
+  StackPosition& at = replay.end;
+  at.vertices = data.base_vertex_count;
+  at.triangles = static_cast<std::uint32_t>(data.base_indices.size() / 3);
+  replay.checkpoints.push_back(at);
+  while (at.level < data.shapes.size()) {
+    walk_up(data, at, 0);
+    if (at.level % checkpoint_spacing == 0 && at.level < data.shapes.size()) replay.checkpoints.push_back(at);
+  }
+  return ModelMaker::make(std::move(data), replay);
 }
 
 namespace {

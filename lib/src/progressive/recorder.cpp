@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "progressive/check.h"
 #include "progressive/record.h"
 #include "progressive/values.h"
 
@@ -484,6 +485,16 @@ class Recorder {
 ModelData record(const Mesh& source, EditLog&& log, std::string method, const Context& context) {
   assert(!source.materials.empty() || source.triangle_count() == 0);
   return Recorder{source, std::move(log), context}.run(std::move(method));
+}
+
+Result<std::shared_ptr<const ProgressiveModel>> record_model(const Mesh& source, EditLog&& log, std::string method,
+                                                             const Context& context) {
+  if (!log.finite(source.vertices)) {
+    return Error{ErrorCode::BadData, "a vertex moves to a place that is not finite", "progressive model"};
+  }
+  ModelData data = record(source, std::move(log), std::move(method), context);
+  if (context.cancelled()) return Error{ErrorCode::Cancelled, "building was cancelled", ""};
+  return trusted_model(std::move(data), bounds(source));
 }
 
 }  // namespace lodestone::progressive

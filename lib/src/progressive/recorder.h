@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,11 @@ class EditLog {
   void merge(const EditLog& other, FaceId first_face, VertexId first_vertex, std::uint64_t most_faces_gone);
 
   void append(const EditRun& run);
+  // Makes room for so many records of ordinary collapses.
+  void reserve(std::size_t records, bool moving);
+
+  // Whether all values that vertices move to are.
+  [[nodiscard]] bool finite(const VertexArrays& arrays) const;
 
   [[nodiscard]] std::uint32_t record_count() const noexcept { return static_cast<std::uint32_t>(records_.size()); }
 
@@ -62,5 +68,10 @@ class EditLog {
 // data of a model whose finest level is `source`, face for face. O(log + mesh).
 // Cancelling leaves it undone: ask context.cancelled() afterwards.
 [[nodiscard]] ModelData record(const Mesh& source, EditLog&& log, std::string method, const Context& context = {});
+
+// The same as a finished model, without the replay that from_data() owes to data of strangers. Precondition: the source
+// is valid. Errors: Cancelled; BadData if a vertex moves to a value that is not finite.
+[[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> record_model(const Mesh& source, EditLog&& log,
+                                                                           std::string method, const Context& context);
 
 }  // namespace lodestone::progressive

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "data.h"
+#include "positions_only.h"
 #include "shapes.h"
 
 namespace lodestone {
@@ -15,14 +16,7 @@ namespace {
 // The claimed error times this bounds the 99.9th percentile of the sampled two-sided distance.
 constexpr double honesty = 3.0;
 
-Mesh positions_only(const Mesh& mesh) {
-  Mesh result;
-  result.materials.emplace_back();
-  result.vertices.positions = mesh.vertices.positions;
-  result.indices = mesh.indices;
-  merge_identical_vertices(result);
-  return result;
-}
+using test::positions_only;
 
 EdgeCollapseOptions down_to(double share, const Mesh& mesh) {
   EdgeCollapseOptions options;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What peers that know no attributes are given, and so are we beside them.
+// What those who know no attributes are given: peers in benchmarks, and we beside them.
 #pragma once
 
 #include <lodestone/mesh.h>
 
-namespace lodestone::bench {
+namespace lodestone::test {
 
 // Positions and triangles, vertices of equal position merged, one plain material.
 inline Mesh positions_only(const Mesh& mesh) {
@@ -16,4 +16,4 @@ inline Mesh positions_only(const Mesh& mesh) {
   return result;
 }
 
-}  // namespace lodestone::bench
+}  // namespace lodestone::test
