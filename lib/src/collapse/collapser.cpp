@@ -39,7 +39,6 @@ Refusal Collapser::check_topology() {
   lost_.clear();
   if ((open || state_.loose) && !apexes_stay()) return Refusal::Border;
   if (state_.loose && !state_.keeps_twins) find_twins();
-  if (!star_.plain) find_lines();
   return Refusal::None;
 }
 
@@ -197,9 +196,11 @@ bool Collapser::try_place(const glm::dvec3& y) {
 }
 
 Refusal Collapser::choose_place() {
-  quadric_ = sum_star(star_, state_.line_weight, state_.mesh.weight_at(star_.u), state_.mesh.weight_at(star_.v));
   const Placement placement = state_.options.placement;
   const bool ends_only = placement == Placement::EndPoint || placement == Placement::Subset;
+  if (ends_only && !fit_at(star_, star_.e).upright && !fit_at(star_, glm::dvec3{0.0}).upright) return Refusal::Flip;
+  if (!star_.plain) find_lines();
+  quadric_ = sum_star(star_, state_.line_weight, state_.mesh.weight_at(star_.u), state_.mesh.weight_at(star_.v));
   // A place where the end that cannot go, or may not move, already is.
   const bool must_u = u_fixed_ || (ends_only && !u_may_go_);
   const bool must_v = v_fixed_ || (ends_only && !v_may_go_);

@@ -24,18 +24,21 @@ struct Part {
 class Search {
  public:
   explicit Search(const WorkingMesh& mesh) : mesh_(mesh), bvh_(mesh.position, indices_of(mesh)) {
-    part_of_.reserve(mesh.faces.size());
-    for (const Face& f : mesh.faces) part_of_.push_back(mesh.part[f.point[0]]);
+    std::vector<std::uint32_t> part_of(mesh.faces.size());
+    std::transform(mesh.faces.begin(), mesh.faces.end(), part_of.begin(),
+                   [&](const Face& f) { return mesh.part[f.point[0]]; });
+    bvh_.set_labels(part_of);
   }
 
   // The distance of the part from the faces of other parts, at its corners and the middles of its faces.
   void measure(Part& part, double limit_m) const {
     double distance = 0.0;
     double deviation = 0.0;
-    std::uint32_t hint = none;  // what is nearest to one place of a part is nearly so to the next
+    std::uint32_t hint = none;
     const auto look = [&](const glm::dvec3& at) {
-      const auto found = bvh_.nearest_of(
-          at, limit_m, [&](FaceId f) { return part_of_[f] != part.id; }, hint);
+      // Only the farthest place counts, and what is nearest to one place is mostly near enough to the next.
+      if (hint != none && bvh_.near(at, hint, distance)) return;
+      const auto found = bvh_.nearest_unlike(at, limit_m, part.id);
       hint = found.slot;
       distance = std::max(
           distance, found.face == none ? std::numeric_limits<double>::infinity() : std::sqrt(found.squared_distance));
@@ -68,7 +71,6 @@ class Search {
   }
   const WorkingMesh& mesh_;
   TriangleBvh bvh_;
-  std::vector<std::uint32_t> part_of_;  // per face
 };
 
 // Parts of few faces, the part with most faces never among them.

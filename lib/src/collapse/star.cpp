@@ -22,6 +22,7 @@ void add_faces(const WorkingMesh& mesh, std::uint32_t near, bool is_u, Star& sta
     const std::uint32_t k = mesh.corners[i] & 3U;
     const Face& f = mesh.faces[index];
     if (f.id == none) continue;
+    if (mesh.has_seams()) __builtin_prefetch(&mesh.corner_vertex[3 * std::size_t{f.id}]);
     const std::uint32_t a = f.point[corner_after[k]];
     const std::uint32_t b = f.point[corner_before[k]];
     const bool shared = a == far || b == far;

@@ -46,13 +46,12 @@ class TriangleBvh {
   }
 
   // Nearest triangle among those for which wanted(face) holds and that lie nearer than `limit`; face `none` if there is
-  // none. `hint` as above.
+  // none.
   template <class Wanted>
-  [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted, std::uint32_t hint = none) const {
+  [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted) const {
     Nearest best;
     best.squared_distance = limit * limit;
     if (nodes_.empty()) return best;
-    if (hint != none && wanted(faces_[hint])) consider(p, hint, best);
     descend(
         p, [&] { return best.squared_distance; },
         [&](std::uint32_t slot) {
@@ -90,6 +89,11 @@ class TriangleBvh {
           return squared_distance(p, slot) > radius * radius || visit(faces_[slot]);
         },
         [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
+  }
+
+  // Whether the triangle of this slot lies no farther than `radius`.
+  [[nodiscard]] bool near(const glm::dvec3& p, std::uint32_t slot, double radius) const noexcept {
+    return squared_distance(p, slot) <= radius * radius;
   }
 
   // Calls visit(face) for every triangle no farther than `radius` for which wanted(face), which is asked first, holds;

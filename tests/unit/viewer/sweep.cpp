@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 
 #include "data.h"
 #include "shapes.h"
@@ -45,11 +46,9 @@ SweepReport report_of(const Model& model, const SweepOptions& options) {
 
 // The promise: going from full detail to 2 % and back in 600 pictures, the largest jump between two of them is at most
 // a third of what snapping records give and a tenth of five discrete levels.
-void check_promise(const Model& model, std::uint32_t supersample = 2) {
+void check_promise(const Model& model, const RenderOptions& render) {
   const auto pop_of = [&](SweepStyle style, std::uint32_t frames, bool and_back) {
-    SweepOptions options = small_sweep(style, frames);
-    options.and_back = and_back;
-    options.render.supersample = supersample;
+    const SweepOptions options{.frames = frames, .and_back = and_back, .style = style, .render = render};
     return report_of(model, options).pop_max;
   };
   const double morph = pop_of(SweepStyle::Morph, 600, true);
@@ -60,7 +59,11 @@ void check_promise(const Model& model, std::uint32_t supersample = 2) {
   CAPTURE(morph, hard, discrete);
   CHECK(morph <= hard / 3.0);
   CHECK(morph <= discrete / 10.0);
+  std::printf("pop_max: morph %.3f, hard %.3f (%.1f times), discrete %.3f (%.1f times)\n", morph, hard, hard / morph,
+              discrete, discrete / morph);
 }
+
+constexpr RenderOptions small{.width_px = 160, .height_px = 96, .supersample = 2};
 
 }  // namespace
 
@@ -167,33 +170,37 @@ TEST_CASE("a morphing sweep of a generated house and outcrop pops far less than 
   SECTION("house") {
     const auto mesh = generate_house({GenerateOptions{.triangles = 8'000, .texture_size_px = 256}});
     REQUIRE(mesh.ok());
-    check_promise(built(*mesh));
+    check_promise(built(*mesh), small);
   }
   SECTION("outcrop") {
     const auto mesh = generate_outcrop({.triangles = 10'000, .texture_size_px = 256});
     REQUIRE(mesh.ok());
-    check_promise(built(*mesh));
+    check_promise(built(*mesh), small);
   }
 }
 
-Model real_model(const std::filesystem::path& file, UpAxis up, std::uint32_t most_triangles = none) {
-  auto loaded = read_mesh(file, {.up = up});
+Model real_model(const std::filesystem::path& file, UpAxis up = UpAxis::FromFile) {
+  const auto loaded = read_mesh(file, {.up = up});
   REQUIRE(loaded.ok());
-  if (loaded->mesh.triangle_count() <= most_triangles) return built(loaded->mesh);
-  auto coarser = simplify(loaded->mesh, {.target_triangles = most_triangles});
-  REQUIRE(coarser.ok());
-  return built(coarser->mesh);
+  return built(loaded->mesh);
 }
 
 TEST_CASE("a morphing sweep of a real building pops far less than hard and discrete ones") {
   LODESTONE_REQUIRE_DATA(root);
-  check_promise(real_model(root / "buildings/4018210/4018210.obj", UpAxis::FromFile), 1);
+  RenderOptions once = small;
+  once.supersample = 1;
+  check_promise(real_model(root / "buildings/4018210/4018210.obj"), once);
 }
 
-// Minutes: named to be run (scripts and people do), not part of the plain run.
+// Minutes: scripts/long_checks.sh runs it. In pictures as large as those of docs/sweeps.md; in the smaller ones of the
+// plain run the outcrop, nine triangles to a pixel, misses the third (0.35 of 0.90).
 TEST_CASE("a morphing sweep of more real models pops far less than hard and discrete ones", "[.][real-sweeps]") {
   LODESTONE_REQUIRE_DATA(root);
-  SECTION("building 4018215") { check_promise(real_model(root / "buildings/4018215/4018215.obj", UpAxis::FromFile)); }
-  SECTION("building 4018267") { check_promise(real_model(root / "buildings/4018267/4018267.obj", UpAxis::FromFile)); }
-  SECTION("outcrop") { check_promise(real_model(root / "outcrops/sol1151/sol1151-wheel-measure.obj", UpAxis::Y)); }
+  constexpr RenderOptions large{.width_px = 320, .height_px = 240, .supersample = 2};
+  for (const char* file : {"4018215/4018215.obj", "4018267/4018267.obj", "4018210/4018210.obj"}) {
+    DYNAMIC_SECTION("building " << file) { check_promise(real_model(root / "buildings" / file), large); }
+  }
+  for (const char* file : {"sol1151/sol1151-wheel-measure.obj", "sol1151_multitex/sol1151_multitex.obj"}) {
+    DYNAMIC_SECTION("outcrop " << file) { check_promise(real_model(root / "outcrops" / file, UpAxis::Y), large); }
+  }
 }
