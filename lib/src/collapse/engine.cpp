@@ -62,6 +62,7 @@ class Engine {
   void drop_degenerate(const std::vector<FaceId>& faces);
   void take_deviations();
   [[nodiscard]] double quota() const { return start_.quota > 0.0 ? start_.quota : quota_share(mesh_.point_count()); }
+  [[nodiscard]] double first_share() const { return mesh_.point_count() < region_points ? small_share : large_share; }
   void cut_regions();
   // Calls work(region) for each, several at once.
   template <class Work>
@@ -300,7 +301,7 @@ CollapseReport Engine::run() {
   diagonal_m_ = bounds(source_).diagonal_m();
   looks_matter_ = options_.attributes == Attributes::All && (mesh_.has_seams() || !source_.face_materials.empty());
   drop_degenerate(start.degenerate);
-  double share = first_share;
+  double share = first_share();
   const double total = static_cast<double>(source_.triangle_count());
   while (!done()) {
     const std::uint32_t before = faces_left_;
@@ -310,7 +311,7 @@ CollapseReport Engine::run() {
     context_.report("collapse", 1.0 - faces_left_ / total);
     if (!any && share >= 1.0 && !relax() && !prune_anew()) break;
     const double wanted = 0.5 * quota() * before;
-    share = before - faces_left_ < wanted ? std::min(1.0, share * 2.0) : first_share;
+    share = before - faces_left_ < wanted ? std::min(1.0, share * 2.0) : first_share();
   }
   return report();
 }

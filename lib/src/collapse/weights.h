@@ -32,8 +32,9 @@ inline constexpr double prune_share = 1.0;
 // In large meshes parts are looked at again when that has grown so much: to measure them is dear.
 inline constexpr double prune_growth = 1.25;
 
-// Share of the edges, cheapest first, that a pass looks at.
-inline constexpr double first_share = 0.6;
+// Share of the edges, cheapest first, that a pass looks at, in small and in large meshes.
+inline constexpr double small_share = 0.5;
+inline constexpr double large_share = 0.6;
 
 // An edge collapses when its exact cost is at most so many times the estimated cost that is on.
 inline constexpr double slack = 2.0;
