@@ -9,6 +9,7 @@
 
 #include <lodestone/facet_shift.h>
 
+#include "facets/looks.h"
 #include "progressive/recorder.h"
 
 namespace lodestone::facets {
@@ -41,6 +42,7 @@ struct FacetMesh {
   VertexArrays values;                             // current
   std::vector<std::uint32_t> uses;                 // per vertex: live corners that name it
   std::vector<double> material_area_m2;            // of the source
+  Looks looks;
   std::uint32_t live_faces = 0;
   std::vector<std::uint32_t> live_of_material;
   std::vector<FaceId> touched;  // moved, redrawn or gone since somebody emptied it

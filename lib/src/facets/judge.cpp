@@ -105,6 +105,7 @@ void SlideJudge::look_at(std::uint32_t point) {
   point_ = point;
   faces_.clear();
   spokes_.clear();
+  outlines_.clear();
   for (const FaceId f : mesh_.faces_of[point]) {
     const Face& face = mesh_.faces[f];
     const auto& p = face.point;
@@ -120,11 +121,22 @@ void SlideJudge::look_at(std::uint32_t point) {
     s.tall_before = is_taller(s.length_before, longest_squared(from_, s.at_a, s.at_b), sliver_m);
     s.material = mesh_.source->face_material(f);
     s.detail = mesh_.surfaces.surfaces[face.surface].area_m2 < detail_area_m2;
-    spokes_.push_back({s.a, 1, s.material, false, true, side_of(from_, s.at_a, s.at_b)});
-    spokes_.push_back({s.b, 1, s.material, false, true, side_of(from_, s.at_b, s.at_a)});
+    s.outline = outline_of(s);
+    spokes_.push_back({s.a, 1, s.material, none, false, true, side_of(from_, s.at_a, s.at_b)});
+    spokes_.push_back({s.b, 1, s.material, none, false, true, side_of(from_, s.at_b, s.at_a)});
     faces_.push_back(s);
   }
   join_spokes();
+}
+
+// Area that a plane shows of one material, gained or lost: what slides within an outline or along a crease adds up to
+// nothing.
+std::size_t SlideJudge::outline_of(const SlidingFace& s) {
+  const std::pair key{s.face->surface, s.material};
+  const auto at = std::find(outlines_.begin(), outlines_.end(), key);
+  if (at != outlines_.end()) return static_cast<std::size_t>(at - outlines_.begin());
+  outlines_.push_back(key);
+  return outlines_.size() - 1;
 }
 
 void SlideJudge::join_spokes() {
@@ -134,7 +146,10 @@ void SlideJudge::join_spokes() {
     if (end > 0 && spokes_[end - 1].to == spokes_[i].to) {
       Spoke& spoke = spokes_[end - 1];
       ++spoke.faces;
-      spoke.mixed = spoke.mixed || spoke.material != spokes_[i].material;
+      if (spoke.material != spokes_[i].material) {
+        spoke.mixed = true;
+        spoke.other = spokes_[i].material;
+      }
       spoke.border = spoke.border && glm::dot(spoke.side, spokes_[i].side) > one_side_cosine;
     } else {
       spokes_[end++] = spokes_[i];
@@ -146,10 +161,11 @@ void SlideJudge::join_spokes() {
 }
 
 // Adds what happens to one face that keeps its corners; false if it must not.
-bool SlideJudge::judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict) const {
+bool SlideJudge::judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict) {
   const glm::dvec3 after = glm::cross(s.at_a - to, s.at_b - to);
   const double length = glm::length(after);
   s.length_after = length;
+  shown_m2_[s.outline] += 0.5 * glm::dot(s.face->normal, after - s.before);
   const double longest2 = longest_squared(to, s.at_a, s.at_b);
   const bool tall = is_taller(length, longest2, sliver_m);
   if (s.tall_before) {
@@ -207,7 +223,9 @@ void SlideJudge::judge_lines(std::uint32_t v, Verdict& verdict) const {
     ends = false;
     const glm::dvec3 w = mesh_.at(s.to);
     const double away = std::max(segment_distance(from_, w, to), v_to_old);
-    swept += 0.5 * glm::length(glm::cross(w - from_, to - from_)) * away * away / 3.0;
+    const double area_m2 = 0.5 * glm::length(glm::cross(w - from_, to - from_));
+    swept += area_m2 * away * away / 3.0;
+    if (s.mixed) verdict.cost += mesh_.looks.cost(s.material, s.other, area_m2);
     verdict.error_m = std::max(verdict.error_m, away);
   }
   // A line that ends here shrinks.
@@ -249,15 +267,21 @@ Verdict SlideJudge::judge(std::uint32_t onto, double most_cost) {
   Verdict verdict;
   const glm::dvec3 to = mesh_.at(onto);
   const double deviation_m = mesh_.deviation_m[point_];
+  shown_m2_.assign(outlines_.size(), 0.0);
   for (SlidingFace& s : faces_) {
     if (s.a == onto || s.b == onto) {
       ++verdict.faces_gone;
       s.length_after = 0.0;
+      shown_m2_[s.outline] -= 0.5 * glm::dot(s.face->normal, s.before);
       judge_loss(mesh_, *s.face, point_, onto, verdict);
     } else if (!judge_face(s, to, deviation_m, verdict) || verdict.cost > most_cost) {
       return verdict;
     }
   }
+  double changed_m2 = 0.0;
+  for (const double more_m2 : shown_m2_) changed_m2 += std::abs(more_m2);
+  verdict.cost += 0.5 * mesh_.looks.cost_of_hole(changed_m2);
+  if (verdict.cost > most_cost) return verdict;
   if (lines_) judge_lines(onto, verdict);
   verdict.error_m = std::hypot(verdict.error_m, deviation_m);
   verdict.allowed = verdict.faces_gone != 0 && verdict.cost <= most_cost && link_holds(onto);

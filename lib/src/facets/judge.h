@@ -2,6 +2,8 @@
 // What a set of moves costs, and whether it may be done.
 #pragma once
 
+#include <utility>
+
 #include "facets/facet_mesh.h"
 
 namespace lodestone::facets {
@@ -28,7 +30,8 @@ class SlideJudge {
     std::uint32_t to = none;
     std::uint32_t faces = 0;
     MaterialId material = none;
-    bool mixed = false;    // materials meet at it
+    MaterialId other = none;  // where two materials meet
+    bool mixed = false;
     bool border = true;    // all faces lie on one side of it: one face, or sheets that lie on each other
     glm::dvec3 side{0.0};  // from the edge into the first face, unit
   };
@@ -48,11 +51,13 @@ class SlideJudge {
     glm::dvec3 before{0.0};  // twice the area long
     double length_before = 0.0, length_after = 0.0;
     MaterialId material = none;
+    std::size_t outline = 0;   // which of outlines_ it is of
     bool tall_before = false;  // has a direction worth keeping
     bool detail = false;
   };
   void join_spokes();
-  [[nodiscard]] bool judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict) const;
+  [[nodiscard]] bool judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict);
+  [[nodiscard]] std::size_t outline_of(const SlidingFace& s);
   void judge_lines(std::uint32_t v, Verdict& verdict) const;
   [[nodiscard]] bool goes_the_wrong_way(bool border) const;
   [[nodiscard]] bool link_holds(std::uint32_t v);
@@ -62,9 +67,11 @@ class SlideJudge {
   glm::dvec3 from_{0.0};
   std::vector<SlidingFace> faces_;
   std::vector<Spoke> spokes_;
-  std::vector<std::uint32_t> others_;  // neighbours of the other end
-  bool lines_ = false;                 // some spoke is a border or mixed
-  bool complex_ = false;               // some spoke has three faces or more
+  std::vector<std::pair<std::uint32_t, MaterialId>> outlines_;  // surfaces and materials around the point
+  std::vector<double> shown_m2_;                                // of each, gained by the slide
+  std::vector<std::uint32_t> others_;                           // neighbours of the other end
+  bool lines_ = false;                                          // some spoke is a border or mixed
+  bool complex_ = false;                                        // some spoke has three faces or more
 };
 
 // Planes move: whatever stands between them and their new place shrinks.

@@ -8,10 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <lodestone/polygon.h>
-
 #include "base/disjoint_sets.h"
 #include "facets/outline.h"
+#include "facets/pane.h"
 
 namespace lodestone::facets {
 namespace {
@@ -113,155 +112,6 @@ bool is_sewn(const FacetMesh& mesh, const Opening& opening, const std::vector<Fa
          });
 }
 
-// Triangles between the points, the first ring around the others.
-std::vector<std::array<std::uint32_t, 3>> triangulate(const FacetMesh& mesh,
-                                                      const std::vector<std::vector<std::uint32_t>>& rings) {
-  std::vector<glm::dvec3> places;
-  std::vector<std::uint32_t> ids, ends;
-  for (const auto& ring : rings) {
-    for (const std::uint32_t p : ring) {
-      places.push_back(mesh.at(p));
-      ids.push_back(p);
-    }
-    ends.push_back(static_cast<std::uint32_t>(places.size()));
-  }
-  auto triangles = triangulate_polygon(places, ends);
-  for (auto& t : triangles) t = {ids[t[0]], ids[t[1]], ids[t[2]]};
-  return triangles;
-}
-
-// Whether the triangles cover what the rings enclose, all turning with the normal.
-bool covers(const FacetMesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& triangles, const glm::dvec3& normal,
-            double area_m2) {
-  double sum = 0.0;
-  for (const auto& t : triangles) {
-    const double a = 0.5 * glm::dot(glm::cross(mesh.at(t[1]) - mesh.at(t[0]), mesh.at(t[2]) - mesh.at(t[0])), normal);
-    if (a < -1e-9) return false;
-    sum += a;
-  }
-  return std::abs(sum - area_m2) < 1e-4 * area_m2 + 1e-7;
-}
-
-// Draws the pane in the hole.
-class PaneMaker {
- public:
-  PaneMaker(const FacetMesh& mesh, const Opening& opening, const Plane& plane, const std::vector<FaceId>& content)
-      : mesh_(mesh), opening_(opening), plane_(plane), content_(content) {}
-
-  bool run(Patch& patch) {
-    std::vector<std::uint32_t> ring{opening_.loop.rbegin(), opening_.loop.rend()};
-    const auto triangles = triangulate(mesh_, {ring});
-    if (!covers(mesh_, triangles, plane_.normal, opening_.area_m2)) return false;
-    if (!choose_faces(triangles.size()) || !choose_vertices(patch)) return false;
-    patch.surface = mesh_.faces[opening_.wall].surface;
-    patch.normal = plane_.normal;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      Redrawn r{faces_[i], triangles[i], {}};
-      for (std::size_t k = 0; k < 3; ++k) r.vertex[k] = vertex_of(r.point[k]);
-      patch.redrawn.push_back(r);
-    }
-    std::sort(faces_.begin(), faces_.end());
-    for (const FaceId f : content_) {
-      if (!contains(faces_, f)) patch.gone.push_back(f);
-    }
-    return true;
-  }
-
- private:
-  // Of the material that shows most, largest first.
-  bool choose_faces(std::size_t count) {
-    std::vector<double> shown(mesh_.source->materials.size(), 0.0);
-    std::vector<double> hidden(shown.size(), 0.0);
-    std::vector<std::size_t> faces(shown.size(), 0);
-    for (const FaceId f : content_) {
-      const MaterialId m = mesh_.source->face_material(f);
-      ++faces[m];
-      // Frames are boxes, panes are sheets that may turn either way: one of the two counts.
-      const double facing = glm::dot(mesh_.faces[f].normal, plane_.normal);
-      if (facing > facing_cosine) shown[m] += area(mesh_, f);
-      if (facing < -facing_cosine) hidden[m] += area(mesh_, f);
-    }
-    for (std::size_t m = 0; m < shown.size(); ++m) shown[m] = std::max(shown[m], hidden[m]);
-    std::size_t best = shown.size();
-    for (std::size_t m = 0; m < shown.size(); ++m) {
-      if (faces[m] >= count && shown[m] > 0.0 && (best == shown.size() || shown[m] > shown[best])) best = m;
-    }
-    if (best == shown.size()) return false;
-    for (const FaceId f : content_) {
-      if (mesh_.source->face_material(f) == best) faces_.push_back(f);
-    }
-    std::stable_sort(faces_.begin(), faces_.end(),
-                     [&](FaceId a, FaceId b) { return area(mesh_, a) * facing(a) > area(mesh_, b) * facing(b); });
-    look_ = faces_.front();
-    faces_.resize(count);
-    return true;
-  }
-
-  [[nodiscard]] double facing(FaceId f) const { return std::abs(glm::dot(mesh_.faces[f].normal, plane_.normal)); }
-
-  // One for each corner: the nearest that no face outside uses.
-  bool choose_vertices(Patch& patch) {
-    struct Free {
-      VertexId vertex;
-      std::uint32_t uses;
-      bool of_pane;
-      glm::dvec3 at;
-      bool taken;
-    };
-    std::vector<Free> free;
-    for (const FaceId f : content_) {
-      const Face& face = mesh_.faces[f];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto at =
-            std::find_if(free.begin(), free.end(), [&](const Free& v) { return v.vertex == face.vertex[k]; });
-        const bool of_pane =
-            mesh_.source->face_material(f) == mesh_.source->face_material(look_) && facing(f) > facing_cosine;
-        if (at == free.end()) {
-          free.push_back({face.vertex[k], 1, of_pane, mesh_.at(face.point[k]), false});
-        } else {
-          ++at->uses;
-          at->of_pane = at->of_pane || of_pane;
-        }
-      }
-    }
-    std::erase_if(free, [&](const Free& v) { return v.uses != mesh_.uses[v.vertex]; });
-    if (free.size() < opening_.loop.size()) return false;
-    const Face& look = mesh_.faces[look_];
-    for (const std::uint32_t p : opening_.loop) {
-      Free* best = nullptr;
-      double least = std::numeric_limits<double>::infinity();
-      for (Free& v : free) {
-        if (v.taken) continue;
-        const double away = glm::length(v.at - mesh_.at(p)) + (v.of_pane ? 0.0 : 10.0);
-        if (away < least) {
-          least = away;
-          best = &v;
-        }
-      }
-      best->taken = true;
-      Placed placed{best->vertex, p, {}, {}};
-      if (!mesh_.values.uvs.empty()) placed.uv = extrapolate_uv(mesh_, look, mesh_.at(p));
-      if (!std::isfinite(placed.uv.x) || !std::isfinite(placed.uv.y)) return false;
-      if (!mesh_.values.normals.empty()) placed.normal = glm::vec3{plane_.normal};
-      patch.placed.push_back(placed);
-    }
-    placed_ = &patch.placed;
-    return true;
-  }
-
-  [[nodiscard]] VertexId vertex_of(std::uint32_t point) const {
-    return std::find_if(placed_->begin(), placed_->end(), [&](const Placed& p) { return p.point == point; })->vertex;
-  }
-
-  const FacetMesh& mesh_;
-  const Opening& opening_;
-  const Plane& plane_;
-  const std::vector<FaceId>& content_;  // ascending
-  std::vector<FaceId> faces_;
-  FaceId look_ = none;
-  const std::vector<Placed>* placed_ = nullptr;
-};
-
 // Draws the wall anew where the hole was.
 class WallMaker {
  public:
@@ -286,8 +136,14 @@ class WallMaker {
     for (const FaceId f : around_) drawn += area(mesh_, f);
     if (std::abs(drawn + opening_.area_m2 - whole) > 1e-3 * whole) return false;
     std::swap(rings[0], rings[outer - 1]);
-    const auto triangles = triangulate(mesh_, rings);
-    if (triangles.size() > around_.size() || !covers(mesh_, triangles, normal_, whole)) return false;
+    std::vector<std::vector<Corner>> corners;
+    for (const auto& ring : rings) {
+      corners.emplace_back();
+      for (const std::uint32_t p : ring) corners.back().push_back({p, mesh_.at(p)});
+    }
+    const auto found = triangulate(corners, normal_, whole);
+    if (!found || found->size() > around_.size()) return false;
+    const auto& triangles = *found;
     patch.surface = mesh_.faces[opening_.wall].surface;
     patch.normal = normal_;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -356,7 +212,7 @@ bool find_filling(const FacetMesh& mesh, const Opening& opening, const Plane& pl
 // What stands in the opening becomes one pane in the plane of the wall, drawn between the corners of the hole: the pane
 // comes forward and hides the rest. Empty if the opening is not covered, if something holds it from outside, or if it
 // is flush.
-std::optional<OpeningJob> Openings::flatten(const Opening& opening) {
+std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price) {
   const Plane plane = plane_of(mesh_, opening);
   const Shape shape{mesh_, opening, plane.normal};
   std::vector<FaceId> content;
@@ -404,10 +260,29 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening) {
     }
   }
   if (std::max(front, back) < covered * opening.area_m2 || is_sewn(mesh_, opening, content)) return std::nullopt;
-  if (!PaneMaker{mesh_, opening, plane, content}.run(job.patch)) return std::nullopt;
+  return pane_of(opening, plane.normal, content, std::move(job), price);
+}
+
+// With a frame as long as that is worth its faces.
+std::optional<OpeningJob> Openings::pane_of(const Opening& opening, const glm::dvec3& normal,
+                                            const std::vector<FaceId>& content, OpeningJob job, double price) const {
   job.kind = OpeningJob::Kind::Flatten;
   job.error_m = std::hypot(job.error_m, most_deviation(mesh_, content));
-  return job;
+  const OpeningView view{mesh_, opening.loop, normal, content};
+  const Site site{mesh_, opening, normal, content, view};
+  const auto with = [&](auto draw) -> std::optional<OpeningJob> {
+    double look_cost = 0.0;
+    auto patch = draw(site, look_cost);
+    if (!patch) return std::nullopt;
+    OpeningJob made = job;
+    made.patch = std::move(*patch);
+    made.cost += look_cost;
+    return made;
+  };
+  auto whole = with(draw_pane);
+  if (whole && whole->key() <= price) return whole;
+  auto framed = with(draw_framed_pane);
+  return framed && (!whole || framed->key() < whole->key()) ? std::move(framed) : std::move(whole);
 }
 
 namespace {
@@ -438,6 +313,8 @@ std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
   // As wide as a square of its area and outline.
   const double size = 2.0 * opening.area_m2 / opening.perimeter_m;
   job.cost = (filling.empty() ? 1.0 : look_weight) * opening.area_m2 * size * size / 3.0;
+  if (filling.empty()) job.cost += mesh.looks.cost_of_hole(opening.area_m2);
+  for (const FaceId f : filling) job.cost += mesh.looks.cost(mesh.source->face_material(f), material, area(mesh, f));
   job.error_m = std::hypot(size, std::max(most_deviation(mesh, around), most_deviation(mesh, filling)));
   // The outline shrinks into its first corner.
   const auto shrink = [&](const std::vector<FaceId>& faces) {
@@ -498,7 +375,7 @@ std::optional<OpeningJob> Openings::job(const Opening& opening, double price, do
   for (const std::uint32_t p : opening.loop) state = 31 * state + mesh_.version[p];
   Known& known = known_[opening.loop];
   if (known.state == state && known.key > price) return std::nullopt;
-  auto pane = flatten(opening);
+  auto pane = flatten(opening, price);
   auto closing = fill(mesh_, opening);
   known = {state, std::min(key_of(pane), key_of(closing))};
   const auto fits = [&](const auto& job) { return job && job->key() <= price && job->error_m <= most_error_m; };

@@ -46,7 +46,10 @@ class Openings {
     std::uint64_t state = 0;  // of the outline and of what is near
     double key = 0.0;
   };
-  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening);
+  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price);
+  [[nodiscard]] std::optional<OpeningJob> pane_of(const Opening& opening, const glm::dvec3& normal,
+                                                  const std::vector<FaceId>& content, OpeningJob job,
+                                                  double price) const;
   [[nodiscard]] PointCells::Box box_of(const Opening& opening) const;
 
   const FacetMesh& mesh_;

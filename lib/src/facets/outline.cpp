@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lodestone/polygon.h>
+
 namespace lodestone::facets {
 namespace {
 
 constexpr double parallel_cosine = 0.99;  // small faces turn far by a few millimetres
 constexpr double plane_m = 0.006;
+constexpr double sliver_m = 1e-3;
 
 // Counter-clockwise from direction a to b, 0..4, grows with the angle.
 double turn(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& normal) {
@@ -22,8 +25,12 @@ double turn(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& normal) 
 
 }  // namespace
 
+bool is_sliver(const FacetMesh& mesh, const Face& face) {
+  return height_m(mesh.at(face.point[0]), mesh.at(face.point[1]), mesh.at(face.point[2])) < sliver_m;
+}
+
 bool lies_in(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m) {
-  return glm::dot(face.normal, normal) > parallel_cosine &&
+  return (glm::dot(face.normal, normal) > parallel_cosine || is_sliver(mesh, face)) &&
          std::all_of(face.point.begin(), face.point.end(),
                      [&](std::uint32_t p) { return std::abs(glm::dot(normal, mesh.at(p)) - offset_m) < plane_m; });
 }
@@ -80,6 +87,29 @@ double signed_area(const FacetMesh& mesh, const std::vector<std::uint32_t>& loop
   const glm::dvec3 a = mesh.at(loop[0]);
   for (std::size_t i = 1; i + 1 < loop.size(); ++i) sum += glm::cross(mesh.at(loop[i]) - a, mesh.at(loop[i + 1]) - a);
   return 0.5 * glm::dot(sum, normal);
+}
+
+std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulate(const std::vector<std::vector<Corner>>& rings,
+                                                                     const glm::dvec3& normal, double area_m2) {
+  std::vector<glm::dvec3> places;
+  std::vector<std::uint32_t> points, ends;
+  for (const auto& ring : rings) {
+    for (const Corner& corner : ring) {
+      places.push_back(corner.at);
+      points.push_back(corner.point);
+    }
+    ends.push_back(static_cast<std::uint32_t>(places.size()));
+  }
+  auto triangles = triangulate_polygon(places, ends);
+  double sum = 0.0;
+  for (auto& t : triangles) {
+    const double a = 0.5 * glm::dot(glm::cross(places[t[1]] - places[t[0]], places[t[2]] - places[t[0]]), normal);
+    if (a < -1e-9) return std::nullopt;
+    sum += a;
+    t = {points[t[0]], points[t[1]], points[t[2]]};
+  }
+  if (!(std::abs(sum - area_m2) < 1e-4 * area_m2 + 1e-7)) return std::nullopt;
+  return triangles;
 }
 
 }  // namespace lodestone::facets

@@ -153,6 +153,24 @@ double PartFinder::cost_of(const Face& face, Look look, double limit_m, double m
   return area_m2 * sum / 6.0;
 }
 
+// Its broad side shows what it lies upon instead.
+double PartFinder::look_lost() const {
+  const auto area = [&](FaceId f) { return 0.5 * glm::length(mesh_.area_vector(mesh_.faces[f])); };
+  const FaceId largest =
+      *std::max_element(part_.faces.begin(), part_.faces.end(), [&](FaceId a, FaceId b) { return area(a) < area(b); });
+  const glm::dvec3 across = mesh_.faces[largest].normal;
+  const MaterialId behind = last_nearest_ == none ? none : mesh_.source->face_material(last_nearest_);
+  if (behind == none) return 0.0;
+  double front = 0.0;
+  double back = 0.0;
+  for (const FaceId f : part_.faces) {
+    const double facing = glm::dot(mesh_.faces[f].normal, across);
+    if (std::abs(facing) < 0.9) continue;
+    (facing > 0.0 ? front : back) += mesh_.looks.cost(mesh_.source->face_material(f), behind, area(f));
+  }
+  return std::max(front, back);
+}
+
 // False as soon as the part is known to be too dear.
 bool PartFinder::measure(double limit_m, double price, Known& known) {
   ++measurement_;
@@ -187,6 +205,7 @@ bool PartFinder::measure(double limit_m, double price, Known& known) {
       return false;
     }
   }
+  part_.cost += look_lost();
   known.key = part_.cost / count;
   std::sort(part_.support.begin(), part_.support.end());
   part_.support.erase(std::unique(part_.support.begin(), part_.support.end()), part_.support.end());

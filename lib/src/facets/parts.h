@@ -55,6 +55,7 @@ class PartFinder {
     double distance_m = 0.0;
   };
   [[nodiscard]] double sample(const glm::dvec3& p, std::uint32_t version, double limit_m, Sample& known);
+  [[nodiscard]] double look_lost() const;
   [[nodiscard]] std::uint64_t support_state(const Part& part) const;
   [[nodiscard]] bool closes_opening(double limit_m) const;
 

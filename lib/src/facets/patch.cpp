@@ -14,6 +14,7 @@ class Painter {
 
   void run(double error_m) {
     log_.begin(static_cast<float>(error_m));
+    for (const auto& [point, to] : patch_.moved) mesh_.place[point] = to;
     for (const FaceId f : patch_.gone) remove(f);
     for (const Redrawn& r : patch_.redrawn) redraw(r);
     for (const Placed& p : patch_.placed) place(p);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "facets/facet_mesh.h"
@@ -28,6 +29,7 @@ struct Merged {
 };
 
 struct Patch {
+  std::vector<std::pair<std::uint32_t, glm::vec3>> moved;  // points that only redrawn faces will use, to their places
   std::vector<FaceId> gone;
   std::vector<Redrawn> redrawn;
   std::vector<Placed> placed;

@@ -16,12 +16,14 @@ constexpr std::size_t fewest_faces = 6;   // of a wall with an opening
 
 Walls::Walls(const FacetMesh& mesh) : mesh_(mesh), wall_of_(mesh.faces.size(), none), state_(mesh.faces.size(), 0) {}
 
-// Faces on one edge; asked of the lower one, so that both give the same answer.
+// Faces on one edge; asked of the lower one that has a direction, so that both give the same answer.
 bool Walls::joined(FaceId f, FaceId g) const {
   if (mesh_.source->face_material(f) != mesh_.source->face_material(g)) return false;
-  const Face& low = mesh_.faces[std::min(f, g)];
-  const double offset_m = glm::dot(low.normal, mesh_.at(low.point[0]));
-  return lies_in(mesh_, mesh_.faces[std::max(f, g)], low.normal, offset_m);
+  if (g < f) std::swap(f, g);
+  if (is_sliver(mesh_, mesh_.faces[f])) std::swap(f, g);
+  const Face& face = mesh_.faces[f];
+  if (is_sliver(mesh_, face)) return false;
+  return lies_in(mesh_, mesh_.faces[g], face.normal, glm::dot(face.normal, mesh_.at(face.point[0])));
 }
 
 void Walls::dissolve(std::uint32_t wall, std::vector<FaceId>& loose) {
@@ -59,7 +61,10 @@ void Walls::grow(FaceId seed, std::vector<FaceId>& loose) {
 
 void Walls::find_openings(Wall& wall) const {
   if (wall.faces.size() < fewest_faces) return;
-  const glm::dvec3 normal = mesh_.faces[wall.faces.front()].normal;
+  const auto plain = std::find_if(wall.faces.begin(), wall.faces.end(),
+                                  [&](FaceId f) { return !is_sliver(mesh_, mesh_.faces[f]); });
+  if (plain == wall.faces.end()) return;
+  const glm::dvec3 normal = mesh_.faces[*plain].normal;
   for (auto& loop : chain(mesh_, outline(mesh_, wall.faces), normal)) {
     const double area_m2 = -signed_area(mesh_, loop, normal);
     if (area_m2 <= 0.0 || loop.size() > most_corners) continue;
@@ -68,7 +73,7 @@ void Walls::find_openings(Wall& wall) const {
       opening.perimeter_m += glm::length(mesh_.at(loop[i]) - mesh_.at(loop[(i + 1) % loop.size()]));
     }
     opening.loop = std::move(loop);
-    opening.wall = wall.faces.front();
+    opening.wall = *plain;
     opening.area_m2 = area_m2;
     wall.openings.push_back(std::move(opening));
   }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "facets/looks.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace lodestone::facets {
+namespace {
+
+double look_m() { static const double v = std::getenv("LK") ? std::atof(std::getenv("LK")) : 0.3; return v; }
+
+constexpr glm::dvec3 unknown_texel{0.5, 0.47, 0.45};  // of an image that is not decoded
+constexpr glm::dvec3 dark_room{0.35};                 // behind glass
+constexpr double least_contrast = 0.004;              // different materials are never quite alike
+static double hole_contrast() { static const double v = std::getenv("HC") ? std::atof(std::getenv("HC")) : 0.1; return v; }
+constexpr std::uint32_t most_samples = 64;            // of an image's width and height
+
+glm::dvec3 mean_texel(const Texture& texture) {
+  if (!texture.image || texture.image->empty() || texture.image->channels < 3) return unknown_texel;
+  const Image& image = *texture.image;
+  const std::uint32_t step_x = std::max(1U, image.width / most_samples);
+  const std::uint32_t step_y = std::max(1U, image.height / most_samples);
+  glm::dvec3 sum{0.0};
+  double count = 0.0;
+  for (std::uint32_t y = 0; y < image.height; y += step_y) {
+    for (std::uint32_t x = 0; x < image.width; x += step_x) {
+      const std::uint8_t* texel = image.at(x, y);
+      sum += glm::dvec3{texel[0], texel[1], texel[2]} / 255.0;
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+Looks::Looks(const Surroundings& source) {
+  std::vector<glm::dvec3> texels;
+  for (const Texture& texture : source.textures) texels.push_back(mean_texel(texture));
+  for (const Material& material : source.materials) {
+    const glm::dvec4 base{material.base_color};
+    glm::dvec3 color{base};
+    if (material.texture < texels.size()) color *= texels[material.texture];
+    color_.push_back(glm::mix(dark_room, color, base.a));
+  }
+}
+
+double Looks::contrast(MaterialId a, MaterialId b) const noexcept {
+  if (a == b) return 0.0;
+  const glm::dvec3 apart = color_[a] - color_[b];
+  return std::max(least_contrast, glm::dot(apart, apart) / 3.0);
+}
+
+double Looks::cost(MaterialId a, MaterialId b, double area_m2) const noexcept {
+  return contrast(a, b) * area_m2 * look_m() * look_m();
+}
+
+double Looks::cost_of_hole(double area_m2) const noexcept { return hole_contrast() * area_m2 * look_m() * look_m(); }
+
+}  // namespace lodestone::facets
