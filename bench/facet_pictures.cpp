@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is seen of facet shift beside edge collapse: the difference of pictures from six directions, textured, at 20, 10,
-// 5 and 2 % of the triangles. One JSON object on stdout.
+// What is seen of facet shift beside edge collapse: the difference of pictures from six directions, textured, at 20,
+// 10, 5 and 2 % of the triangles. One JSON object on stdout.
 //
 //     bench_facet_pictures [--alone] [--sheets FOLDER] FILE...
 //
@@ -61,7 +61,8 @@ void write_sheet(const std::string& name, const Mesh& source, const std::vector<
     grid.draw(0, row, source, source);
     for (std::size_t i = 0; i < methods[row].size(); ++i) grid.draw(i + 1, row, methods[row][i], source);
   }
-  if (const auto written = write_image(grid.image(), name); !written) std::fprintf(stderr, "%s not written\n", name.c_str());
+  if (const auto written = write_image(grid.image(), name); !written)
+    std::fprintf(stderr, "%s not written\n", name.c_str());
 }
 
 }  // namespace
@@ -91,7 +92,8 @@ int main(int argc, char** argv) {
     std::vector<Levels> methods{build(source, [](const Mesh& m) { return build_by_facet_shift(m); })};
     if (!alone) methods.push_back(build(source, [](const Mesh& m) { return build_by_edge_collapse(m); }));
     const std::string stem = std::filesystem::path{file}.stem().string();
-    std::printf("%s\n{\"name\": \"%s\", \"triangles\": %u", count++ == 0 ? "" : ",", stem.c_str(), source.triangle_count());
+    std::printf("%s\n{\"name\": \"%s\", \"triangles\": %u", count++ == 0 ? "" : ",", stem.c_str(),
+                source.triangle_count());
     const Differences shift = differences("facet_shift", source, methods[0]);
     const Differences edge = alone ? shift : differences("edge_collapse", source, methods[1]);
     for (std::size_t i = 0; i < ratio_count; ++i) {

@@ -7,7 +7,7 @@
 namespace lodestone::facets {
 namespace {
 
-constexpr int samples = 28;              // per side of the box around the outline
+constexpr int samples = 28;  // per side of the box around the outline
 constexpr double inset_step_m = 0.025;
 constexpr double most_inset_ratio = 0.3;  // of the shorter side
 

@@ -212,8 +212,6 @@ class PaneMaker {
 
 std::optional<Patch> draw_pane(const Site& site, double& look_cost) { return PaneMaker{site}.whole(look_cost); }
 
-std::optional<Patch> draw_framed_pane(const Site& site, double& look_cost) {
-  return PaneMaker{site}.framed(look_cost);
-}
+std::optional<Patch> draw_framed_pane(const Site& site, double& look_cost) { return PaneMaker{site}.framed(look_cost); }
 
 }  // namespace lodestone::facets

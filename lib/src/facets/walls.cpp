@@ -16,13 +16,15 @@ constexpr std::size_t fewest_faces = 6;   // of a wall with an opening
 
 Walls::Walls(const FacetMesh& mesh) : mesh_(mesh), wall_of_(mesh.faces.size(), none), state_(mesh.faces.size(), 0) {}
 
-// Faces on one edge; asked of the lower one that has a direction, so that both give the same answer.
+// Faces on one edge; asked of the lower one that has a direction, so that both give the same answer. Slivers, drawn to
+// tie a side to the points it passes by, join what they lie between: without them the pier between two windows would
+// stand in one large hole.
 bool Walls::joined(FaceId f, FaceId g) const {
   if (mesh_.source->face_material(f) != mesh_.source->face_material(g)) return false;
   if (g < f) std::swap(f, g);
   if (is_sliver(mesh_, mesh_.faces[f])) std::swap(f, g);
   const Face& face = mesh_.faces[f];
-  if (is_sliver(mesh_, face)) return false;
+  if (is_sliver(mesh_, face)) return true;
   return lies_in(mesh_, mesh_.faces[g], face.normal, glm::dot(face.normal, mesh_.at(face.point[0])));
 }
 
@@ -61,8 +63,8 @@ void Walls::grow(FaceId seed, std::vector<FaceId>& loose) {
 
 void Walls::find_openings(Wall& wall) const {
   if (wall.faces.size() < fewest_faces) return;
-  const auto plain = std::find_if(wall.faces.begin(), wall.faces.end(),
-                                  [&](FaceId f) { return !is_sliver(mesh_, mesh_.faces[f]); });
+  const auto plain =
+      std::find_if(wall.faces.begin(), wall.faces.end(), [&](FaceId f) { return !is_sliver(mesh_, mesh_.faces[f]); });
   if (plain == wall.faces.end()) return;
   const glm::dvec3 normal = mesh_.faces[*plain].normal;
   for (auto& loop : chain(mesh_, outline(mesh_, wall.faces), normal)) {
