@@ -279,9 +279,9 @@ std::optional<OpeningJob> Openings::pane_of(const Opening& opening, const glm::d
     made.cost += look_cost;
     return made;
   };
-  auto whole = with(draw_pane);
-  if (whole && whole->key() <= price) return whole;
   auto framed = with(draw_framed_pane);
+  if (framed && framed->key() <= price) return framed;
+  auto whole = with(draw_pane);
   return framed && (!whole || framed->key() < whole->key()) ? std::move(framed) : std::move(whole);
 }
 
