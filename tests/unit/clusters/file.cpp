@@ -181,6 +181,8 @@ TEST_CASE("whatever has been streamed in, cuts stay whole, and they end at the w
       select_cut((*file)->graph(), view, options, scratch, cut);
       for (const NodeId n : cut) REQUIRE(streamer.page((*file)->page_of(n)) != nullptr);
       streamer.update(scratch);
+      // What is drawn stays, however small the budget.
+      for (const NodeId n : cut) REQUIRE(streamer.page((*file)->page_of(n)) != nullptr);
       if (frame % 3 != 2) streamer.wait();
     }
     REQUIRE(find_faults(*whole, cut, extract(*whole, cut), border).cracks == 0);
