@@ -56,7 +56,9 @@ App::App(const WindowOptions& options, std::unique_ptr<GlfwWindow> window, std::
   if (options.lod_colors) look_.coloring = Coloring::Lod;
   if (options.cluster_colors) look_.coloring = Coloring::Clusters;
   flies_ = options.fly;
-  if (options.file.empty()) {
+  if (options.street_houses > 0) {
+    loader_.start_street(options.street_houses);
+  } else if (options.file.empty()) {
     message_ = "Drop a model here: .lode, OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...";
   } else {
     loader_.keep_tiles_in(options.tile_cache);
@@ -102,7 +104,18 @@ Status App::take_loaded() {
     break;
   }
   std::visit([&](const auto& opened) { show(opened); }, **result);
+  if (Status level = take_level(); !level) return level;
   return take_plan();
+}
+
+// Of the file that was named beside it, as the plan.
+Status App::take_level() {
+  if (options_.level.empty() || loader_.file() != options_.file) return Done{};
+  if (!shown_) return Error{ErrorCode::BadArgument, "only a progressive model has levels with names", options_.level};
+  const auto level = shown_->model->level_of_name(options_.level);
+  if (!level) return level.error();
+  control_.go_to(*level, *shown_->model);
+  return Done{};
 }
 
 // The plan belongs to the file that was named beside it.
@@ -117,11 +130,16 @@ Status App::take_plan() {
   return Done{};
 }
 
-void App::show(const Loader::Model& model) {
-  const bool first = !shows_something();
+void App::clear() {
   shown_.reset();
   tiles_.reset();
   clusters_.reset();
+  street_.reset();
+}
+
+void App::show(const Loader::Model& model) {
+  const bool first = !shows_something();
+  clear();
   surfaces_ = std::make_unique<Surfaces>(*gl_, model->data());
   shown_ = std::make_unique<Shown>(*gl_, model, static_cast<double>(morph_seconds_), model->record_count());
   control_.attach(*model);
@@ -138,8 +156,7 @@ void App::show(const Loader::Model& model) {
 }
 
 void App::show(const Loader::Tiles& tiles) {
-  shown_.reset();
-  clusters_.reset();
+  clear();
   tiles_ = std::make_unique<TileScene>(*gl_, tiles);
   control_.mode = LevelMode::Automatic;
   control_.max_error_px = 1.0F;
@@ -148,17 +165,31 @@ void App::show(const Loader::Tiles& tiles) {
 }
 
 void App::show(const Loader::Clusters& clusters) {
-  shown_.reset();
-  tiles_.reset();
+  clear();
   clusters_ = std::make_unique<ClusterScene>(*gl_, clusters);
   control_.mode = LevelMode::Automatic;
   control_.max_error_px = 1.0F;
   frame(clusters_->bounds(), Orbit{}.yaw_rad);
 }
 
+void App::show(const Loader::StreetOfHouses& street) {
+  clear();
+  street_ = std::make_unique<StreetScene>(*gl_, street, static_cast<double>(morph_seconds_));
+  control_.mode = LevelMode::Automatic;
+  control_.max_error_px = options_.perceptual ? 0.5F : 1.0F;
+  frame(street->bounds, 0.0);
+  stand_in_street();
+}
+
+void App::stand_in_street() {
+  const Standpoint stand = near_end(street_->street());
+  camera_.stand(stand.eye, stand.target, street_->street().bounds.diagonal_m());
+}
+
 Box App::bounds() const {
   if (shown_) return shown_->model->bounds();
   if (tiles_) return tiles_->bounds();
+  if (street_) return street_->street().bounds;
   return clusters_ ? clusters_->bounds() : Box{};
 }
 
@@ -166,12 +197,13 @@ Box App::bounds() const {
 View App::view() const {
   const View by_hand = camera_.view();
   if (!flies_ || !shows_something()) return by_hand;
+  if (street_) return along_street(street_->street(), flown_s_ / round_s, by_hand.width_px, by_hand.height_px);
   return fly_view(bounds(), flown_s_ / round_s, by_hand.width_px, by_hand.height_px);
 }
 
 // What is new on the screen, from where all of it is seen.
 void App::frame(const Box& bounds, double yaw_rad) {
-  title_ = loader_.file().filename().string();
+  title_ = loader_.title();
   window_->set_title(title_ + " - Lodestone");
   int width = 0;
   int height = 0;
@@ -208,6 +240,11 @@ void App::move_on(double dt_s) {
     tiles_->set_error_px(double(control_.max_error_px));
     tiles_->update(view(), dt_s);
     still_frames_ = tiles_->still() ? still_frames_ + 1 : 0;
+  }
+  if (street_) {
+    street_->update(view(), double(control_.max_error_px), dt_s);
+    uploaded_kb_ = static_cast<double>(street_->uploaded_bytes()) / 1024.0;
+    still_frames_ = street_->still() ? still_frames_ + 1 : 0;
   }
   if (!shown_) return;
   control_.drive(shown_->cursor, view(), dt_s);
@@ -269,11 +306,12 @@ PanelResult App::lay_out_panel(const View& view) {
   state.title = title_;
   state.message = message_;
   if (loader_.busy()) {
-    state.loading = loader_.file().filename().string() + ": " + loader_.stage();
+    state.loading = loader_.title() + ": " + loader_.stage();
     state.loading_fraction = loader_.fraction();
   }
   state.tiles = tiles_.get();
   state.clusters = clusters_.get();
+  state.street = street_.get();
   state.cluster_frame = cluster_frame_;
   if (shown_) {
     const Cursor& cursor = shown_->cursor;
@@ -292,6 +330,7 @@ void App::draw_frame() {
   std::span<const Item> items = item ? std::span<const Item>{&*item, 1} : std::span<const Item>{};
   if (tiles_) items = tiles_->items();
   if (clusters_) items = clusters_->items(look_.coloring);
+  if (street_) items = street_->items();
   renderer_.draw(*frame_, view(), box, items, look_);
   presenter_.present(*frame_, 0);
   panel_.draw();
@@ -304,6 +343,7 @@ void App::obey(const PanelResult& asked) {
   if (asked.frame_model) flies_ = false;
   if (asked.frame_model && tiles_) frame(tiles_->bounds(), tiles_->yaw_rad());
   if (asked.frame_model && clusters_) frame(clusters_->bounds(), Orbit{}.yaw_rad);
+  if (asked.frame_model && street_) stand_in_street();
   if (!shown_) return;
   if (asked.frame_model) {
     const View view = camera_.view();

@@ -15,6 +15,7 @@
 #include "loader.h"
 #include "orbit_camera.h"
 #include "panel.h"
+#include "street_scene.h"
 #include "window.h"
 
 namespace lodestone::render {
@@ -38,13 +39,17 @@ class App {
       Presenter presenter);
   [[nodiscard]] Status take_loaded();
   [[nodiscard]] Status take_plan();
+  [[nodiscard]] Status take_level();
+  void clear();
   void show(const Loader::Model& model);
   void show(const Loader::Tiles& tiles);
   void show(const Loader::Clusters& clusters);
-  [[nodiscard]] bool shows_something() const { return shown_ || tiles_ || clusters_; }
+  void show(const Loader::StreetOfHouses& street);
+  [[nodiscard]] bool shows_something() const { return shown_ || tiles_ || clusters_ || street_; }
   [[nodiscard]] Box bounds() const;
   [[nodiscard]] View view() const;
   void frame(const Box& bounds, double yaw_rad);
+  void stand_in_street();
   void move_on(double dt_s);
   void use_input(double dt_s);
   void use_keys();
@@ -67,6 +72,7 @@ class App {
   std::unique_ptr<Shown> shown_;            ///< a model,
   std::unique_ptr<TileScene> tiles_;        ///< or a tileset,
   std::unique_ptr<ClusterScene> clusters_;  ///< or a cluster graph
+  std::unique_ptr<StreetScene> street_;     ///< or a street
   ClusterFrame cluster_frame_;
   OrbitCamera camera_;
   LevelControl control_;

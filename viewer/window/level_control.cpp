@@ -5,6 +5,12 @@
 #include <cmath>
 
 namespace lodestone::render {
+namespace {
+
+// "lod3" is how files and commands spell it; CityGML writes LoD3.
+std::string shown_name(const std::string& name) { return name.starts_with("lod") ? "LoD" + name.substr(3) : name; }
+
+}  // namespace
 
 void LevelControl::attach(const ProgressiveModel& model) {
   finest_log_ = std::log(std::max(1.0, double(model.info(model.record_count()).triangles)));
@@ -12,6 +18,29 @@ void LevelControl::attach(const ProgressiveModel& model) {
   const double base = std::max<double>(model.info(0).triangles, 12.0);
   base_log_ = std::min(std::log(base), finest_log_);
   slider = 1.0F;
+  exact_.reset();
+  marks_.clear();
+  std::vector<NamedLevel> named = model.data().named_levels;
+  std::stable_sort(named.begin(), named.end(),
+                   [](const NamedLevel& a, const NamedLevel& b) { return a.level > b.level; });
+  for (const NamedLevel& n : named) {
+    if (!marks_.empty() && marks_.back().level == n.level) {
+      marks_.back().name += ", " + shown_name(n.name);
+    } else {
+      marks_.push_back({shown_name(n.name), n.level, slider_of(model.info(n.level).triangles)});
+    }
+  }
+}
+
+std::string LevelControl::name_of(Level level) const {
+  const auto mark = std::find_if(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.level <= level; });
+  return mark == marks_.end() ? std::string{} : mark->name;
+}
+
+void LevelControl::go_to(Level level, const ProgressiveModel& model) {
+  mode = LevelMode::Slider;
+  slider = slider_of(model.info(level).triangles);
+  exact_ = ExactPlace{slider, level};
 }
 
 float LevelControl::slider_of(std::uint32_t triangles) const {
@@ -43,6 +72,11 @@ void LevelControl::drive(Cursor& cursor, const View& view, double dt_s) {
     place = std::clamp(place, 0.0, 1.0);
     slider = static_cast<float>(place);
   }
+  if (exact_ && slider == exact_->slider && mode == LevelMode::Slider) {
+    cursor.set_target(Target::level(exact_->level));
+    return;
+  }
+  exact_.reset();
   // At the upper end exactly the source, whatever rounding says.
   cursor.set_target(slider >= 1.0F ? Target::level(cursor.model().record_count())
                                    : Target::triangles(triangles_of(slider)));

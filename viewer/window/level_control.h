@@ -4,6 +4,8 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <lodestone/cursor.h>
 #include <lodestone/discrete_levels.h>
@@ -16,7 +18,22 @@ enum class LevelMode : std::uint8_t { Slider, Sweep, Automatic };
 /// 0 = base (a dozen triangles where the base has fewer).
 class LevelControl {
  public:
+  /// A level of the model that has a name, or several.
+  struct Mark {
+    std::string name;  ///< as shown: "LoD2", or "LoD1, block"
+    Level level = 0;
+    float slider = 0.0F;
+  };
+
   void attach(const ProgressiveModel& model);
+
+  /// Finest first; empty where the model names no levels.
+  [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
+  /// The name that a level goes by: that of the finest mark which is not finer than it. Empty where there is none, and
+  /// below the coarsest.
+  [[nodiscard]] std::string name_of(Level level) const;
+  /// Puts the slider on exactly this level, although others may have as many triangles.
+  void go_to(Level level, const ProgressiveModel& model);
 
   LevelMode mode = LevelMode::Slider;
   float slider = 1.0F;        ///< 0..1
@@ -35,6 +52,13 @@ class LevelControl {
  private:
   [[nodiscard]] Level needed_from(const View& view, const ProgressiveModel& model) const;
 
+  struct ExactPlace {
+    float slider;
+    Level level;
+  };
+
+  std::vector<Mark> marks_;
+  std::optional<ExactPlace> exact_;  ///< since go_to(), for as long as the slider stays there
   double finest_log_ = 0.0;
   double base_log_ = 0.0;
   double direction_ = -1.0;

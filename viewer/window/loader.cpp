@@ -51,17 +51,33 @@ void Loader::stop() {
 void Loader::start(const std::filesystem::path& file) {
   stop();
   file_ = file;
+  begin(file.filename().string(),
+        [file, cache = tile_cache_](const Context& context) { return open(file, cache, context); });
+}
+
+void Loader::start_street(unsigned house_count) {
+  stop();
+  file_.clear();
+  begin("Street", [house_count](const Context& context) -> Result<Opened> {
+    auto street = make_street({.house_count = house_count}, context);
+    if (!street) return street.error();
+    return Opened{std::move(*street)};
+  });
+}
+
+void Loader::begin(const std::string& title, const Work& work) {
+  title_ = title;
   fraction_ = 0.0F;
   {
     const std::lock_guard lock{mutex_};
-    stage_ = "reading";
+    stage_ = file_.empty() ? "building houses" : "reading";
     result_.reset();
   }
   busy_ = true;
-  worker_ = std::thread{[this] { load(); }};
+  worker_ = std::thread{[this, work] { load(work); }};
 }
 
-void Loader::load() {
+void Loader::load(const Work& work) {
   Context context;
   context.cancel = &cancel_;
   context.progress = [this](std::string_view stage, double fraction) {
@@ -69,7 +85,7 @@ void Loader::load() {
     const std::lock_guard lock{mutex_};
     stage_ = stage;
   };
-  auto result = open(file_, tile_cache_, context);
+  auto result = work(context);
   const std::lock_guard lock{mutex_};
   result_ = std::move(result);
   busy_ = false;

@@ -18,11 +18,19 @@ int main(int argc, char** argv) {
       "Shows a model at any level of detail; any mesh is made into a progressive model on opening.\n"
       "Example: lodestone-view house.lode"};
   double ratio = 0.0;
-  app.add_option(
+  auto* file_option = app.add_option(
       "file", options.file,
       "model (.lode), cluster graph (.lodg), tileset.json or mesh (OBJ, PLY, glTF, 3DS, CityJSON, CityGML, ...)");
+  app.add_option("--street", options.street_houses,
+                 "instead of a file: so many generated houses along a street (24 if no number is given), each built by "
+                 "facet shift and as coarse as its distance allows; --fly flies along")
+      ->expected(0, 1)
+      ->default_str("24")
+      ->check(CLI::Range(1, 200))
+      ->excludes(file_option);
   const auto* ratio_option =
       app.add_option("--ratio", ratio, "go to this share of the triangles")->check(CLI::Range(0.0, 1.0));
+  app.add_option("--level", options.level, "go to the level of this name: lod3, lod2, lod1 or block");
   app.add_option("--width", options.width_px, "window's width in pixels")->check(CLI::Range(200, 16384));
   app.add_option("--height", options.height_px, "window's height in pixels")->check(CLI::Range(200, 16384));
   app.add_option("--screenshot", options.screenshot, "write the window as PNG once the level is reached, and close");

@@ -23,6 +23,14 @@ void OrbitCamera::frame(const Box& bounds, std::uint32_t width_px, std::uint32_t
   target_m_ = view.eye + view.forward * distance_m_;
 }
 
+void OrbitCamera::stand(const glm::dvec3& eye, const glm::dvec3& target, double size_m) {
+  size_m_ = std::max(size_m, 1e-6);
+  distance_m_ = std::max(glm::length(target - eye), 1e-6);
+  const glm::dvec3 forward = (target - eye) / distance_m_;
+  orbit_ = {.yaw_rad = std::atan2(-forward.x, forward.y), .pitch_rad = std::asin(-forward.z)};
+  target_m_ = target;
+}
+
 void OrbitCamera::resize(std::uint32_t width_px, std::uint32_t height_px) {
   width_px_ = std::max(1U, width_px);
   height_px_ = std::max(1U, height_px);

@@ -10,6 +10,8 @@ class OrbitCamera {
  public:
   /// Frames the box in a three-quarter view from this side.
   void frame(const Box& bounds, std::uint32_t width_px, std::uint32_t height_px, double yaw_rad = Orbit{}.yaw_rad);
+  /// Stands at `eye` and circles `target`; `size_m` is that of what is seen, the scale of zooming.
+  void stand(const glm::dvec3& eye, const glm::dvec3& target, double size_m);
   void resize(std::uint32_t width_px, std::uint32_t height_px);
 
   /// Mouse moved by so many pixels: a drag over the picture's height is half a turn.

@@ -13,6 +13,24 @@ namespace {
 
 constexpr float panel_width_px = 330.0F;
 
+// Ticks on the slider drawn last where the levels with names lie, and below it a button for each that goes there.
+void level_marks(LevelControl& control, const ProgressiveModel& model) {
+  const ImVec2 from = ImGui::GetItemRectMin();
+  const ImVec2 to = ImGui::GetItemRectMax();
+  // The middle of the slider's grab stays within half its width of the ends, and two pixels.
+  const float margin_px = 2.0F + 0.5F * ImGui::GetStyle().GrabMinSize;
+  for (const LevelControl::Mark& mark : control.marks()) {
+    const float x = from.x + margin_px + mark.slider * (to.x - from.x - 2.0F * margin_px);
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(x, to.y - 5.0F), ImVec2(x, to.y + 2.0F),
+                                        ImGui::GetColorU32(ImGuiCol_Text), 1.5F);
+  }
+  // Coarse on the left, as on the slider.
+  for (auto mark = control.marks().rbegin(); mark != control.marks().rend(); ++mark) {
+    if (mark != control.marks().rbegin()) ImGui::SameLine();
+    if (ImGui::Button(mark->name.c_str())) control.go_to(mark->level, model);
+  }
+}
+
 void level_controls(const PanelState& state) {
   LevelControl& control = state.control;
   const ProgressiveModel& model = state.cursor->model();
@@ -20,9 +38,12 @@ void level_controls(const PanelState& state) {
 
   ImGui::TextUnformatted("Level of detail");
   ImGui::SetNextItemWidth(-1.0F);
-  char label[48];
-  std::snprintf(label, sizeof label, "%u triangles", control.triangles_of(control.slider));
+  const std::string name = control.name_of(state.cursor->level());
+  char label[80];
+  std::snprintf(label, sizeof label, "%s%s%u triangles", name.c_str(), name.empty() ? "" : ": ",
+                control.triangles_of(control.slider));
   if (ImGui::SliderFloat("##level", &control.slider, 0.0F, 1.0F, label)) control.mode = LevelMode::Slider;
+  level_marks(control, model);
   const bool playing = control.mode == LevelMode::Sweep;
   if (ImGui::Button(playing ? "Pause" : "Play", ImVec2(80.0F, 0.0F))) {
     control.mode = playing ? LevelMode::Slider : LevelMode::Sweep;
@@ -81,6 +102,18 @@ void cluster_controls(const PanelState& state) {
   }
   ImGui::SameLine();
   ImGui::Checkbox("Fly", &state.flies);
+}
+
+void street_controls(const PanelState& state) {
+  const std::uint32_t triangles = state.street->triangle_count();
+  const std::uint32_t finest = state.street->finest_triangle_count();
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::SliderFloat("##pixels", &state.control.max_error_px, 0.1F, 20.0F, "error at most %.2f pixels",
+                     ImGuiSliderFlags_Logarithmic);
+  ImGui::Text("%u of %u triangles (%.2f %%)", triangles, finest, 100.0 * triangles / std::max(1U, finest));
+  const auto [fewest, most] = state.street->triangles_of_a_house();
+  ImGui::Text("%zu houses of %u to %u triangles", state.street->street().houses.size(), fewest, most);
+  ImGui::Checkbox("Fly along the street", &state.flies);
 }
 
 void look_controls(const PanelState& state, PanelResult& result) {
@@ -149,7 +182,8 @@ PanelResult Panel::layout(const PanelState& state) {
   }
   if (state.tiles != nullptr) tile_controls(state);
   if (state.clusters != nullptr) cluster_controls(state);
-  if (state.cursor != nullptr || state.tiles != nullptr || state.clusters != nullptr) {
+  if (state.street != nullptr) street_controls(state);
+  if (state.cursor != nullptr || state.tiles != nullptr || state.clusters != nullptr || state.street != nullptr) {
     ImGui::Separator();
     look_controls(state, result);
     frame_graph(state);

@@ -8,6 +8,7 @@
 #include "../render/options.h"
 #include "../render/tile_scene.h"
 #include "level_control.h"
+#include "street_scene.h"
 
 struct GLFWwindow;
 
@@ -22,6 +23,7 @@ struct PanelState {
   const Cursor* cursor = nullptr;          ///< null while there is no model
   const TileScene* tiles = nullptr;        ///< null while there is no tileset
   const ClusterScene* clusters = nullptr;  ///< null while there is no cluster graph
+  const StreetScene* street = nullptr;     ///< null while there is no street
   ClusterFrame cluster_frame;              ///< of `clusters`
   bool& flies;
   std::string title;    ///< file shown

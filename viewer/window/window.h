@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <lodestone/result.h>
 
@@ -12,10 +13,13 @@ namespace lodestone::render {
 
 struct WindowOptions {
   std::filesystem::path file;  ///< opened first; empty: the window waits for a file to be dropped on it
+  /// Instead of a file, so many generated houses along a street, each at the level that its distance asks for; 0: none.
+  unsigned street_houses = 0;
   std::uint32_t width_px = 1280;
   std::uint32_t height_px = 800;
   /// Share of the triangles to go to once the model is there; the slider moves with it.
   std::optional<double> ratio;
+  std::string level;  ///< name of a level to go to ("lod2"), as `ratio`; empty: none
   /// Written, panel and all, once the model has arrived at its level; the window closes then.
   std::filesystem::path screenshot;
   bool play = false;  ///< start the sweep

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The window program, driven with mouse and keys on a virtual display, and its own screenshot.
 #include <lodestone/cluster_file.h>
+#include <lodestone/facet_shift.h>
 #include <lodestone/formats.h>
 #include <lodestone/generate.h>
 #include <lodestone/tileset_writer.h>
 
 #include <sys/wait.h>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -75,6 +77,25 @@ Image picture(const std::filesystem::path& file) {
   return std::move(*image);
 }
 
+// What the window shows on a display of its own with these arguments, once it has come to rest.
+Image shown(const std::filesystem::path& folder, const std::string& arguments) {
+  // The driver of the display leaks and is gone before leaks are looked for, so that no suppression can name it.
+  const std::string program =
+      std::string{
+          "ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 "
+          "xvfb-run -a -s '-screen 0 1024x700x24' "} +
+      LODESTONE_VIEW_PROGRAM + " " + arguments + " --width 1000 --height 600";
+  INFO(arguments);
+  REQUIRE(run(program + " --screenshot " + (folder / "shown.png").string() + " 2> /dev/null") == 0);
+  return picture(folder / "shown.png");
+}
+
+bool display_is_missing() {
+  if (run("command -v xvfb-run > /dev/null") == 0) return false;
+  WARN("SKIPPED: xvfb-run is missing");
+  return true;
+}
+
 }  // namespace
 
 TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys refine it again") {
@@ -101,30 +122,52 @@ TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys re
 }
 
 TEST_CASE("the window opens a tileset or a cluster graph and loads what its camera needs") {
-  if (run("command -v xvfb-run > /dev/null") != 0) {
-    WARN("SKIPPED: xvfb-run is missing");
-    return;
-  }
+  if (display_is_missing()) return;
   const auto folder = test::scratch_folder("window_tiles");
   auto cliff = generate_outcrop({.triangles = 12'000, .textures = 2, .texture_size_px = 128, .seed = 5});
   REQUIRE(cliff);
   REQUIRE(write_outcrop(*cliff, folder, {.pyramid = {.tile_bytes = 12'000}}));
-  const auto shown = [&](const std::string& file, const std::string& colors) {
-    // The driver of the display leaks and is gone before leaks are looked for, so that no suppression can name it.
-    const std::string program =
-        std::string{
-            "ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 "
-            "xvfb-run -a -s '-screen 0 1024x700x24' "} +
-        LODESTONE_VIEW_PROGRAM + " " + (folder / file).string() + " --width 1000 --height 600 " + colors;
-    REQUIRE(run(program + " --screenshot " + (folder / "near.png").string() + " 2> /dev/null") == 0);
-    return picture(folder / "near.png");
-  };
   // Most of the cliff is fine enough for its distance to be blue and green: the root alone would be red.
-  CHECK(redness(shown("tileset.json", "--lod-colors")) < 0.0);
+  CHECK(redness(shown(folder, (folder / "tileset.json").string() + " --lod-colors")) < 0.0);
   const auto graph = build_cluster_graph(*cliff);
   REQUIRE(graph);
   REQUIRE(write_cluster_graph(*graph, folder / "cliff.lodg"));
-  CHECK(redness(shown("cliff.lodg", "--lod-colors")) < 0.0);
+  CHECK(redness(shown(folder, (folder / "cliff.lodg").string() + " --lod-colors")) < 0.0);
+}
+
+TEST_CASE("the window goes to a level by its name") {
+  if (display_is_missing()) return;
+  const auto folder = test::scratch_folder("window_names");
+  const auto house = generate_house({{.triangles = 3'000, .texture_size_px = 16}, Roof::Hip});
+  REQUIRE(house);
+  const auto built = build_by_facet_shift(*house);
+  REQUIRE(built);
+  const auto file = folder / "house.lode";
+  REQUIRE(write_model(*built->model, file));
+  const double lod3 = redness(shown(folder, file.string() + " --lod-colors --level lod3"));
+  CHECK(redness(shown(folder, file.string() + " --lod-colors --level block")) > lod3 + 10.0);
+  CHECK(run("xvfb-run -a " + std::string{LODESTONE_VIEW_PROGRAM} + " " + file.string() + " --level lod9 2> " +
+            (folder / "log").string()) == 2);
+  std::ifstream in{folder / "log"};
+  const std::string log{std::istreambuf_iterator<char>{in}, {}};
+  CHECK(log.find("there are lod3, lod2, lod1, block") != std::string::npos);
+}
+
+TEST_CASE("the window shows a street with a house on each side") {
+  if (display_is_missing()) return;
+  const Image street = shown(test::scratch_folder("window_street"), "--street 2");
+  const auto* roadway = street.at(500, 590);
+  CHECK(roadway[1] < 150);  // asphalt: the sky behind it is twice as light
+  // Houses are colourful, left of the roadway and right of it.
+  std::array<int, 2> colourful{0, 0};
+  for (std::uint32_t y = 320; y < 500; ++y) {
+    for (std::uint32_t x = 0; x < street.width; ++x) {
+      const auto* p = street.at(x, y);
+      if (p[0] > p[2] + 20 && p[0] > p[1]) ++colourful[x < street.width / 2 ? 0 : 1];
+    }
+  }
+  CHECK(colourful[0] > 1000);
+  CHECK(colourful[1] > 1000);
 }
 
 TEST_CASE("the driver tells a viewer that dies from a display that does") {
