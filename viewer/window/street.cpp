@@ -116,7 +116,8 @@ Standpoint near_end(const Street& street) {
 View along_street(const Street& street, double turns, std::uint32_t width_px, std::uint32_t height_px) {
   Standpoint stand = near_end(street);
   const double length_m = street.bounds.max.y - lawn_m - stand.eye.y;
-  const double way_m = 0.5 * length_m * (1.0 - std::cos(2.0 * std::numbers::pi * turns));
+  constexpr double flown_share = 0.7;
+  const double way_m = 0.5 * flown_share * length_m * (1.0 - std::cos(2.0 * std::numbers::pi * turns));
   stand.eye.y += way_m;
   stand.target.y += way_m;
   return look_at(stand.eye, stand.target, width_px, height_px, 0.8);

@@ -38,8 +38,8 @@ struct Standpoint {
 };
 [[nodiscard]] Standpoint near_end(const Street& street);
 
-/// A camera that flies along the roadway to its far end and, looking ahead all the while, back: there at 0.5 turns,
-/// back at 1.
+/// A camera that flies along the roadway as far as there are houses to see ahead and, looking ahead all the while,
+/// back: there at 0.5 turns, back at 1.
 [[nodiscard]] View along_street(const Street& street, double turns, std::uint32_t width_px, std::uint32_t height_px);
 
 }  // namespace lodestone::render
