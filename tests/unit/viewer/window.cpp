@@ -77,17 +77,19 @@ Image picture(const std::filesystem::path& file) {
   return std::move(*image);
 }
 
-// What the window shows on a display of its own with these arguments, once it has come to rest.
-Image shown(const std::filesystem::path& folder, const std::string& arguments) {
+// The window program on a display of its own, with these arguments.
+std::string on_display(const std::string& arguments) {
   // The driver of the display leaks and is gone before leaks are looked for, so that no suppression can name it.
-  const std::string program =
-      std::string{
-          "ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 "
-          "xvfb-run -a -s '-screen 0 1024x700x24' "} +
-      LODESTONE_VIEW_PROGRAM + " " + arguments + " --width 1000 --height 600";
+  return std::string{"ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 xvfb-run -a -s '-screen 0 1024x700x24' "} +
+         LODESTONE_VIEW_PROGRAM + " " + arguments + " --width 1000 --height 600";
+}
+
+// What it shows once it has come to rest.
+Image shown(const std::filesystem::path& folder, const std::string& arguments) {
+  const auto file = folder / "shown.png";
   INFO(arguments);
-  REQUIRE(run(program + " --screenshot " + (folder / "shown.png").string() + " 2> /dev/null") == 0);
-  return picture(folder / "shown.png");
+  REQUIRE(run(on_display(arguments) + " --screenshot " + file.string() + " 2> /dev/null") == 0);
+  return picture(file);
 }
 
 bool display_is_missing() {
@@ -146,8 +148,7 @@ TEST_CASE("the window goes to a level by its name") {
   REQUIRE(write_model(*built->model, file));
   const double lod3 = redness(shown(folder, file.string() + " --lod-colors --level lod3"));
   CHECK(redness(shown(folder, file.string() + " --lod-colors --level block")) > lod3 + 10.0);
-  CHECK(run("xvfb-run -a " + std::string{LODESTONE_VIEW_PROGRAM} + " " + file.string() + " --level lod9 2> " +
-            (folder / "log").string()) == 2);
+  CHECK(run(on_display(file.string() + " --level lod9") + " 2> " + (folder / "log").string()) == 2);
   std::ifstream in{folder / "log"};
   const std::string log{std::istreambuf_iterator<char>{in}, {}};
   CHECK(log.find("there are lod3, lod2, lod1, block") != std::string::npos);
