@@ -11,6 +11,9 @@ cd "$(dirname "$0")/.."
 case "${1:-}" in -h | --help) sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 0 ;; esac
 mapfile -t sources < <(grep -rlE '"\[\.\]' tests --include=*.cpp | sort)
 status=0
+# Cluster graphs are tried on the dragon too, where npm can fetch it.
+if [ -z "${LODESTONE_DRAGON:-}" ] && command -v npm > /dev/null; then LODESTONE_DRAGON=$(scripts/fetch_dragon.sh); fi
+export LODESTONE_DRAGON=${LODESTONE_DRAGON:-}
 [ -e build/release/build.ninja ] || cmake --preset release > /dev/null
 for source in "${sources[@]}"; do
   folder=$(dirname "$source")

@@ -49,16 +49,8 @@ class TriangleBvh {
   // none.
   template <class Wanted>
   [[nodiscard]] Nearest nearest_of(const glm::dvec3& p, double limit, Wanted wanted) const {
-    Nearest best;
-    best.squared_distance = limit * limit;
-    if (nodes_.empty()) return best;
-    descend(
-        p, [&] { return best.squared_distance; },
-        [&](std::uint32_t slot) {
-          if (wanted(faces_[slot])) consider(p, slot, best);
-          return true;
-        });
-    return best;
+    return nearest_among(
+        p, limit, [&](std::uint32_t slot) { return wanted(faces_[slot]); }, [](std::uint32_t) { return false; });
   }
 
   // Gives every face a label; `none` takes it out of nearest_unlike() and within_unlike(). O(n).
@@ -67,17 +59,9 @@ class TriangleBvh {
   // As nearest_of() and within() among the faces with a label other than this one. What is all of this label, however
   // near, is passed over as a whole. Precondition: set_labels().
   [[nodiscard]] Nearest nearest_unlike(const glm::dvec3& p, double limit, std::uint32_t label) const {
-    Nearest best;
-    best.squared_distance = limit * limit;
-    if (nodes_.empty()) return best;
-    descend(
-        p, [&] { return best.squared_distance; },
-        [&](std::uint32_t slot) {
-          if (labels_[slot] != label && labels_[slot] != none) consider(p, slot, best);
-          return true;
-        },
+    return nearest_among(
+        p, limit, [&](std::uint32_t slot) { return labels_[slot] != label && labels_[slot] != none; },
         [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
-    return best;
   }
   template <class Wanted, class Visit>
   void within_unlike(const glm::dvec3& p, double radius, std::uint32_t label, Wanted wanted, Visit visit) const {
@@ -135,6 +119,22 @@ class TriangleBvh {
   // descend() takes an exclusive bound, hence the next larger number.
   [[nodiscard]] static double inclusive(double radius) noexcept {
     return std::nextafter(radius * radius, std::numeric_limits<double>::infinity());
+  }
+
+  // Nearest of the slots that takes(slot), nearer than `limit`, in nodes not left out by skips(node).
+  template <class Takes, class Skips>
+  [[nodiscard]] Nearest nearest_among(const glm::dvec3& p, double limit, Takes takes, Skips skips) const {
+    Nearest best;
+    best.squared_distance = limit * limit;
+    if (nodes_.empty()) return best;
+    descend(
+        p, [&] { return best.squared_distance; },
+        [&](std::uint32_t slot) {
+          if (takes(slot)) consider(p, slot, best);
+          return true;
+        },
+        skips);
+    return best;
   }
 
   // Calls visit(slot) for the triangles of leaves nearer than bound(), nearer ones first, until it returns false.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 #include <lodestone/clusters.h>
 #include <lodestone/formats.h>
@@ -14,7 +15,7 @@ namespace lodestone::test {
 namespace {
 
 // Every promise, on one model.
-void require_sound(const Mesh& mesh) {
+void require_sound(const Mesh& mesh, int cameras, int labellings) {
   const auto graph = build_cluster_graph(mesh);
   REQUIRE(graph.ok());
   REQUIRE(validate(graph->graph).ok());
@@ -22,11 +23,24 @@ void require_sound(const Mesh& mesh) {
   CHECK(graph->roots[0].cause.empty());
   CHECK(extract(*graph, leaves(*graph)).triangle_count() == mesh.triangle_count());
   CHECK(changed_border_edges(*graph) == 0);
-  for (const FaultCounts& faults : {try_cuts(*graph, 4, 5), try_labellings(*graph, 2, 6)}) {
+  for (const FaultCounts& faults : {try_cuts(*graph, cameras, 5), try_labellings(*graph, labellings, 6)}) {
     CHECK(faults.cracks == 0);
     CHECK(faults.morphed_cracks == 0);
   }
   CHECK(graph->levels[1].mean_fill >= 115.0);
+}
+
+// Gives every third face vertices and uvs of its own, as exporters of photogrammetry do.
+void cut_third_loose(Mesh& mesh) {
+  for (std::uint32_t f = 0; f < mesh.triangle_count(); f += 3) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const VertexId v = mesh.indices[3 * f + k];
+      mesh.indices[3 * f + k] = mesh.vertices.size();
+      mesh.vertices.positions.push_back(glm::vec3{mesh.vertices.positions[v]});
+      if (!mesh.vertices.normals.empty()) mesh.vertices.normals.push_back(glm::vec3{mesh.vertices.normals[v]});
+      mesh.vertices.uvs.push_back(mesh.vertices.uvs[v] + glm::vec2{0.01F * static_cast<float>(f % 7), 0.0F});
+    }
+  }
 }
 
 }  // namespace
@@ -39,24 +53,32 @@ TEST_CASE("real scans, outcrops, geology and a building: one root, no cracks") {
     INFO(name);
     const auto loaded = read_mesh(root / name, {.textures = LoadTextures::Reference});
     REQUIRE(loaded.ok());
-    require_sound(loaded->mesh);
+    require_sound(loaded->mesh, 1000, 100);
   }
 }
 
 TEST_CASE("a generated outcrop with many charts, and with a third of its faces cut loose: one root, no cracks") {
   auto mesh = generate_outcrop({.triangles = 30'000, .texture_size_px = 16, .charts = 60, .pixels = Pixels::Skip});
   REQUIRE(mesh.ok());
-  require_sound(*mesh);
-  for (std::uint32_t f = 0; f < mesh->triangle_count(); f += 3) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const VertexId v = mesh->indices[3 * f + k];
-      mesh->indices[3 * f + k] = mesh->vertices.size();
-      mesh->vertices.positions.push_back(glm::vec3{mesh->vertices.positions[v]});
-      if (!mesh->vertices.normals.empty()) mesh->vertices.normals.push_back(glm::vec3{mesh->vertices.normals[v]});
-      mesh->vertices.uvs.push_back(mesh->vertices.uvs[v] + glm::vec2{0.01F * static_cast<float>(f % 7), 0.0F});
-    }
+  require_sound(*mesh, 20, 10);
+  cut_third_loose(*mesh);
+  require_sound(*mesh, 20, 10);
+}
+
+// Minutes: run by scripts/long_checks.sh, which fetches the dragon and says where it is.
+TEST_CASE("the dragon and a million triangles, cut loose or not: a thousand cameras, a hundred labellings", "[.]") {
+  if (const char* dragon = std::getenv("LODESTONE_DRAGON"); dragon != nullptr && *dragon != '\0') {
+    const auto loaded = read_mesh(dragon);
+    REQUIRE(loaded.ok());
+    require_sound(loaded->mesh, 1000, 100);
+  } else {
+    WARN("skipped for the dragon: LODESTONE_DRAGON does not name its file");
   }
-  require_sound(*mesh);
+  auto mesh = generate_outcrop({.triangles = 1'000'000, .texture_size_px = 16, .charts = 300, .pixels = Pixels::Skip});
+  REQUIRE(mesh.ok());
+  require_sound(*mesh, 1000, 100);
+  cut_third_loose(*mesh);
+  require_sound(*mesh, 1000, 100);
 }
 
 TEST_CASE("the error of a level bounds what sampling finds, 99.9 % of it by itself and all of it twice over") {
