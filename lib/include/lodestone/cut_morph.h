@@ -38,7 +38,7 @@ class CutMorph {
   [[nodiscard]] bool settled() const noexcept { return settled_; }
 
  private:
-  enum Flag : std::uint8_t { shown = 1, wanted = 2 };
+  enum Flag : std::uint8_t { Shown = 1, Wanted = 2 };
   void mark_wanted(std::span<const GroupId> groups) noexcept;
   [[nodiscard]] double rate(double dt_s) const noexcept;
   [[nodiscard]] bool holds_finer(GroupId group) const noexcept;

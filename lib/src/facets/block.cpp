@@ -135,6 +135,15 @@ bool Block::must_come(const FacetMesh& mesh) const noexcept {
                       roofs_.left(mesh) < roofs_.least_faces);
 }
 
+bool Block::needs(const FacetMesh& mesh, std::span<const FaceId> faces) const noexcept {
+  const auto lacks = [&](const Fabric& fabric) {
+    const auto going = std::count_if(faces.begin(), faces.end(),
+                                     [&](FaceId f) { return fabric.has[mesh.source->face_material(f)] != 0; });
+    return going > 0 && fabric.left(mesh) < fabric.least_faces + static_cast<std::uint32_t>(going);
+  };
+  return exists() && (lacks(walls_) || lacks(roofs_));
+}
+
 void Block::measure(const Mesh& source) {
   std::vector<VertexId> indices;
   for (const Triangle& t : triangles_) indices.insert(indices.end(), t.corner.begin(), t.corner.end());

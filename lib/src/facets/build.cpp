@@ -86,10 +86,12 @@ class Builder {
   void offer_around(std::uint32_t point);
   bool offer_later();
   [[nodiscard]] bool cuts_through();
+  [[nodiscard]] bool takes_of_the_block(const Move& move) const;
   bool become_block();
   [[nodiscard]] std::string why_no_block() const;
   [[nodiscard]] bool done() const {
-    return mesh_.live_faces <= options_.target_triangles || block_.must_come(mesh_) || context_.cancelled();
+    return mesh_.live_faces <= options_.target_triangles || block_due_ || block_.must_come(mesh_) ||
+           context_.cancelled();
   }
 
   const FacetShiftOptions& options_;
@@ -102,6 +104,7 @@ class Builder {
   Planner planner_;
   PartFinder parts_;
   Block block_;
+  bool block_due_ = false;  // the next slide would take a face that it needs
   CrossingFinder crossings_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> refused_;  // slides, at this price
   std::priority_queue<Entry> queue_;
@@ -203,6 +206,10 @@ void Builder::slide_points(double price) {
       refused_.insert({e.point, e.onto});
       later_.push_back(e.point);
       continue;
+    }
+    if (takes_of_the_block(move)) {
+      block_due_ = true;
+      return;
     }
     apply(mesh_, moved_, v.error_m, log_);
     ++(v.tilts ? report_.tilting_collapses : report_.points_merged);
@@ -345,6 +352,15 @@ bool Builder::close_openings(double price) {
 }
 
 // When little is left, or nothing else can be done.
+bool Builder::takes_of_the_block(const Move& move) const {
+  std::vector<FaceId> gone;
+  std::copy_if(moved_.faces().begin(), moved_.faces().end(), std::back_inserter(gone), [&](FaceId f) {
+    const auto& p = mesh_.faces[f].point;
+    return std::find(p.begin(), p.end(), move.onto) != p.end();
+  });
+  return block_.needs(mesh_, gone);
+}
+
 bool Builder::become_block() {
   const std::uint32_t faces = block_.face_count();
   if (!block_.exists() || mesh_.live_faces <= std::max(faces, options_.target_triangles)) return false;

@@ -226,25 +226,27 @@ class Cells {
   }
 
  private:
-  // At least half of it, asked of the raster's cells.
+  // At least half of its area, of which much may lie beyond the raster.
   [[nodiscard]] bool covered(const std::vector<std::uint32_t>& cell, const Raster& raster) const {
     glm::dvec2 low = points_[cell[0]];
     glm::dvec2 high = low;
-    for (const std::uint32_t p : cell) {
-      low = glm::min(low, points_[p]);
-      high = glm::max(high, points_[p]);
+    double twice_area_m2 = 0.0;
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+      const glm::dvec2& p = points_[cell[i]];
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+      twice_area_m2 += cross(p - points_[cell[0]], points_[cell[(i + 1) % cell.size()]] - points_[cell[0]]);
     }
-    int inside = 0;
     int full = 0;
     raster.visit(low, high, [&](const glm::dvec2& p, double height) {
+      if (height == Raster::empty_height) return;
       for (std::size_t i = 0; i < cell.size(); ++i) {
         const glm::dvec2 a = points_[cell[i]];
         if (cross(points_[cell[(i + 1) % cell.size()]] - a, p - a) < 0.0) return;
       }
-      ++inside;
-      full += height > Raster::empty_height ? 1 : 0;
+      ++full;
     });
-    return 2 * full > inside;
+    return full * raster.cell_area_m2() > 0.25 * twice_area_m2;
   }
 
   std::vector<glm::dvec2> points_;

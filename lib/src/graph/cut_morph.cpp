@@ -44,16 +44,16 @@ CutSummary CutMorph::update(const View& view, const CutOptions& options, double 
     travel(view, options, step);
     appear(false);
   }
-  settled_ = std::all_of(wanted_.begin(), wanted_.end(), [&](GroupId g) { return (flags_[g] & shown) != 0; }) &&
+  settled_ = std::all_of(wanted_.begin(), wanted_.end(), [&](GroupId g) { return (flags_[g] & Shown) != 0; }) &&
              refined_.size() == wanted_.size();
   emit(view, options, out, summary);
   return summary;
 }
 
 void CutMorph::mark_wanted(std::span<const GroupId> groups) noexcept {
-  for (const GroupId g : wanted_) flags_[g] &= static_cast<std::uint8_t>(~wanted);
+  for (const GroupId g : wanted_) flags_[g] &= static_cast<std::uint8_t>(~Wanted);
   wanted_.assign(groups.begin(), groups.end());
-  for (const GroupId g : wanted_) flags_[g] |= wanted;
+  for (const GroupId g : wanted_) flags_[g] |= Wanted;
 }
 
 // As many levels as there are to go at once, so that the whole way takes the duration.
@@ -62,7 +62,7 @@ double CutMorph::rate(double dt_s) const noexcept {
   std::uint16_t most = 0;
   const auto look = [&](const std::vector<GroupId>& groups) {
     for (const GroupId g : groups) {
-      if ((flags_[g] & (shown | wanted)) == (shown | wanted)) continue;
+      if ((flags_[g] & (Shown | Wanted)) == (Shown | Wanted)) continue;
       least = std::min(least, depth_[g]);
       most = std::max(most, depth_[g]);
     }
@@ -76,13 +76,13 @@ double CutMorph::rate(double dt_s) const noexcept {
 bool CutMorph::holds_finer(GroupId group) const noexcept {
   const Range links = graph_.groups[group].links;
   return std::any_of(graph_.links.begin() + links.begin, graph_.links.begin() + links.end,
-                     [&](const LodLink& link) { return link.maker != none && (flags_[link.maker] & shown) != 0; });
+                     [&](const LodLink& link) { return link.maker != none && (flags_[link.maker] & Shown) != 0; });
 }
 
 bool CutMorph::wants_finer(GroupId group) const noexcept {
   const Range links = graph_.groups[group].links;
   return std::any_of(graph_.links.begin() + links.begin, graph_.links.begin() + links.end,
-                     [&](const LodLink& link) { return link.maker != none && (flags_[link.maker] & wanted) != 0; });
+                     [&](const LodLink& link) { return link.maker != none && (flags_[link.maker] & Wanted) != 0; });
 }
 
 bool CutMorph::loaded(GroupId group, const CutOptions& options) const noexcept {
@@ -98,16 +98,16 @@ void CutMorph::travel(const View& view, const CutOptions& options, double step) 
   for (std::size_t i = refined_.size(); i-- > 1;) {
     const GroupId g = refined_[i];
     if (holds_finer(g)) continue;
-    const bool stays = (flags_[g] & wanted) != 0;
+    const bool stays = (flags_[g] & Wanted) != 0;
     double target = 1.0;
     if (stays) target = wants_finer(g) ? 0.0 : morph_weight(graph_, view, options.error_px, g);
     weights_[g] = std::clamp(target, weights_[g] - step, weights_[g] + step);
     if (!stays && weights_[g] >= 1.0) {
-      flags_[g] &= static_cast<std::uint8_t>(~shown);
+      flags_[g] &= static_cast<std::uint8_t>(~Shown);
       weights_[g] = 0.0;
     }
   }
-  std::erase_if(refined_, [&](GroupId g) { return (flags_[g] & shown) == 0; });
+  std::erase_if(refined_, [&](GroupId g) { return (flags_[g] & Shown) == 0; });
 }
 
 // What lost its pages goes, and what hangs on it.
@@ -117,7 +117,7 @@ void CutMorph::drop(const CutOptions& options) noexcept {
   std::sort(refined_.begin(), refined_.end());
   for (const GroupId g : refined_) {
     if (!loaded(g, options) || ready_parents_[g] != graph_.groups[g].parent_count) {
-      flags_[g] &= static_cast<std::uint8_t>(~shown);
+      flags_[g] &= static_cast<std::uint8_t>(~Shown);
       weights_[g] = 0.0;
       continue;
     }
@@ -126,14 +126,14 @@ void CutMorph::drop(const CutOptions& options) noexcept {
       if (graph_.links[i].maker != none) ++ready_parents_[graph_.links[i].maker];
     }
   }
-  std::erase_if(refined_, [&](GroupId g) { return (flags_[g] & shown) == 0; });
+  std::erase_if(refined_, [&](GroupId g) { return (flags_[g] & Shown) == 0; });
 }
 
 // Wanted groups all of whose parents are shown and at rest; they begin as what stood for them.
 void CutMorph::appear(bool at_once) noexcept {
   if (refined_.empty()) {
     refined_.push_back(0);
-    flags_[0] |= shown;
+    flags_[0] |= Shown;
   }
   std::fill(ready_parents_.begin(), ready_parents_.end(), 0);
   std::sort(refined_.begin(), refined_.end());
@@ -144,8 +144,8 @@ void CutMorph::appear(bool at_once) noexcept {
     for (std::uint32_t l = links.begin; l != links.end; ++l) {
       const GroupId maker = graph_.links[l].maker;
       if (maker == none || ++ready_parents_[maker] != graph_.groups[maker].parent_count) continue;
-      if ((flags_[maker] & wanted) == 0 || (flags_[maker] & shown) != 0) continue;
-      flags_[maker] |= shown;
+      if ((flags_[maker] & Wanted) == 0 || (flags_[maker] & Shown) != 0) continue;
+      flags_[maker] |= Shown;
       weights_[maker] = at_once ? 0.0 : 1.0;
       refined_.push_back(maker);
     }
@@ -161,7 +161,7 @@ void CutMorph::emit(const View& view, const CutOptions& options, std::vector<Nod
     const Range links = graph_.groups[g].links;
     for (std::uint32_t i = links.begin; i != links.end; ++i) {
       const LodLink& link = graph_.links[i];
-      if (link.maker != none && (flags_[link.maker] & shown) != 0) continue;
+      if (link.maker != none && (flags_[link.maker] & Shown) != 0) continue;
       for (NodeId n = link.nodes.begin; n != link.nodes.end; ++n) {
         if (options.culling == Culling::Frustum && frustum.outside(graph_.nodes[n].bounds)) continue;
         out.push_back(n);

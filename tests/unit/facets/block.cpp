@@ -59,6 +59,19 @@ TEST_CASE("the block stands on the outline of the walls, as high as half of the 
   for (const char* name : {"lod1", "block"}) CHECK(built->model->level_of_name(name).value() == 0);
 }
 
+TEST_CASE("what overhangs does not widen the block") {
+  const Mesh house = test::small_house(20'000, Roof::Flat);
+  const auto built = build_by_facet_shift(house);
+  REQUIRE(built.ok());
+  REQUIRE(built->report.reached_block);
+  const Box whole = bounds(house);
+  const Box box = bounds(built->model->extract(0));
+  for (int k = 0; k < 3; ++k) {
+    CHECK(box.min[k] >= whole.min[k]);
+    CHECK(box.max[k] <= whole.max[k]);
+  }
+}
+
 TEST_CASE("houses of every roof end as a block, told by name, within the claimed error") {
   for (const Roof roof : {Roof::Flat, Roof::Gable, Roof::Hip, Roof::Spire}) {
     CAPTURE(static_cast<int>(roof));
