@@ -15,7 +15,7 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/generate.h>
 
-#include "thread_clock.h"
+#include "processor_clock.h"
 
 namespace {
 

@@ -8,7 +8,6 @@
 // with the morph and without. --cut-loose gives every third face vertices and uvs of its own, the mesh on which other
 // builders crack.
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,17 +24,12 @@
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
 
+#include "processor_clock.h"
 #include "viewer/headless/headless_clusters.h"
 
 namespace {
 
 using namespace lodestone;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // As exporters write meshes that give each face its own uv.
 void cut_loose(Mesh& mesh) {

@@ -20,7 +20,7 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/formats.h>
 
-#include "thread_clock.h"
+#include "processor_clock.h"
 
 namespace {
 

@@ -10,9 +10,7 @@
 //                                                       outcrop_meshlab.sh)
 //
 // One JSON object per line.
-#include <meshoptimizer.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include <chrono>
 #include <cstdio>
@@ -27,18 +25,14 @@
 #include <lodestone/tile_loader.h>
 #include <lodestone/tileset_writer.h>
 
+#include "meshoptimizer_peer.h"
+#include "processor_clock.h"
 #include "viewer/headless/stage.h"
 #include "viewer/render/tile_scene.h"
 
 namespace {
 
 using namespace lodestone;
-
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -165,17 +159,6 @@ int load(const char* file, const char* folder) {
   }
   std::printf("{\"peak_megabytes\": %.0f}\n", peak_mb());
   return 0;
-}
-
-Mesh by_meshoptimizer(const Mesh& mesh, std::uint32_t target) {
-  Mesh result = mesh;
-  const std::size_t count =
-      meshopt_simplify(result.indices.data(), mesh.indices.data(), mesh.indices.size(), &mesh.vertices.positions[0].x,
-                       mesh.vertex_count(), sizeof(glm::vec3), std::size_t{target} * 3, 1e9F, 0, nullptr);
-  result.indices.resize(count);
-  result.face_materials.clear();
-  result.face_features.clear();
-  return result;
 }
 
 void print_error(const char* name, const Mesh& source, const Mesh& result) {

@@ -9,7 +9,7 @@
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
 #include "peers.h"
-#include "thread_clock.h"
+#include "processor_clock.h"
 
 namespace lodestone::peers {
 namespace {

@@ -5,7 +5,7 @@
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
 #include "peers.h"
-#include "thread_clock.h"
+#include "processor_clock.h"
 
 namespace lodestone::peers {
 

@@ -16,7 +16,7 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/generate.h>
 
-#include "thread_clock.h"
+#include "processor_clock.h"
 #include "viewer/headless/detail_stage.h"
 
 namespace {

@@ -7,9 +7,7 @@
 // full records, of the same without records, wall seconds with records of one and of two threads, those of
 // meshopt_simplify, and the two-sided errors in ppm of the diagonal (geometry only, all attributes kept,
 // meshoptimizer). Best of three runs.
-#include <meshoptimizer.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include <algorithm>
 #include <chrono>
@@ -23,7 +21,9 @@
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
 
+#include "meshoptimizer_peer.h"
 #include "positions_only.h"
+#include "processor_clock.h"
 
 namespace {
 
@@ -36,29 +36,15 @@ struct Seconds {
 
 template <class Work>
 Seconds best_of_three(Work&& work) {
-  const auto processor = [] {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  };
   Seconds best;
   for (int i = 0; i < 3; ++i) {
-    const double start = processor();
+    const double start = processor_seconds();
     const auto wall = std::chrono::steady_clock::now();
     work();
-    best.processor = std::min(best.processor, processor() - start);
+    best.processor = std::min(best.processor, processor_seconds() - start);
     best.wall = std::min(best.wall, std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count());
   }
   return best;
-}
-
-Mesh by_meshoptimizer(const Mesh& mesh, std::uint32_t target) {
-  Mesh result = mesh;
-  const std::size_t count =
-      meshopt_simplify(result.indices.data(), mesh.indices.data(), mesh.indices.size(), &mesh.vertices.positions[0].x,
-                       mesh.vertex_count(), sizeof(glm::vec3), std::size_t{target} * 3, 1e9F, 0, nullptr);
-  result.indices.resize(count);
-  return result;
 }
 
 EdgeCollapseOptions options_for(std::uint32_t target, Attributes attributes) {

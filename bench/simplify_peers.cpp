@@ -17,7 +17,7 @@
 
 #include "peers.h"
 #include "positions_only.h"
-#include "thread_clock.h"
+#include "processor_clock.h"
 
 namespace {
 

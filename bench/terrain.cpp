@@ -16,12 +16,12 @@
 #include <string>
 #include <vector>
 
+#include "processor_clock.h"
 #include "terrain/chains.h"
 #include "terrain/edge_collapse.h"
 #include "terrain/error.h"
 #include "terrain/greedy.h"
 #include "terrain/point_set.h"
-#include "thread_clock.h"
 
 namespace {
 
