@@ -2,18 +2,17 @@
 // Binary glTF 2.0: one primitive per material over shared vertex arrays, everything in one file. Several levels of one
 // model become one mesh each, that share materials and textures (MSFT_lod). Features of faces become ids of vertices
 // and a table (EXT_mesh_features, EXT_structural_metadata).
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "axes.h"
-#include "gltf_colors.h"
-#include "gltf_meshopt.h"
+#include "gltf_layout.h"
 #include "gltf_metadata.h"
+#include "gltf_surfaces.h"
+#include "gltf_vertices.h"
 #include "writers.h"
 
 namespace lodestone {
@@ -21,62 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian and written as it lies in memory");
-
-enum GltfConstant : int {
-  ArrayBuffer = 34962,
-  ElementArrayBuffer = 34963,
-  Byte = 5120,
-  UnsignedShort = 5123,
-  UnsignedInt = 5125,
-  Float = 5126,
-};
-
-constexpr std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) & ~std::uint64_t{3}; }
-constexpr std::uint64_t padded_to_8(std::uint64_t bytes) { return (bytes + 7) & ~std::uint64_t{7}; }
-
-std::vector<std::uint8_t> bytes_of(std::span<const std::byte> raw) {
-  const auto* first = reinterpret_cast<const std::uint8_t*>(raw.data());
-  return {first, first + raw.size()};
-}
-
-constexpr const char* webp = "image/webp";
-constexpr const char* meshopt = "EXT_meshopt_compression";
-
-std::vector<glm::vec3> turned_positions(const VertexArrays& vertices) {
-  std::vector<glm::vec3> turned;
-  turned.reserve(vertices.positions.size());
-  for (const glm::vec3& p : vertices.positions) turned.push_back(z_up_to_y_up(p));
-  return turned;
-}
-
-glm::vec3 normal_for_gltf(const glm::vec3& normal) {
-  const glm::vec3 n = z_up_to_y_up(normal);
-  const float length = glm::length(n);
-  constexpr float tolerance = 4e-4F;  // gltf-validator allows 5e-4
-  if (std::abs(length - 1.0F) < tolerance) return n;
-  return length > 0.0F ? n / length : glm::vec3{0.0F, 1.0F, 0.0F};
-}
-
-std::vector<glm::vec3> normals_for_gltf(const VertexArrays& vertices) {
-  std::vector<glm::vec3> normals;
-  normals.reserve(vertices.normals.size());
-  for (const glm::vec3& n : vertices.normals) normals.push_back(normal_for_gltf(n));
-  return normals;
-}
-
-// 16 bits each, four a vertex.
-std::vector<std::uint16_t> linear_colors(const VertexArrays& vertices) {
-  std::array<std::uint16_t, 256> linear{};
-  for (int c = 0; c < 256; ++c)
-    linear[c] = static_cast<std::uint16_t>(std::lround(srgb_to_linear(c / 255.0) * 65535.0));
-  std::vector<std::uint16_t> colors;
-  colors.reserve(4 * vertices.colors.size());
-  for (const glm::u8vec4& color : vertices.colors) {
-    for (int c = 0; c < 3; ++c) colors.push_back(linear[color[c]]);
-    colors.push_back(static_cast<std::uint16_t>(color.a * 257));
-  }
-  return colors;
-}
 
 // The least and greatest place of an accessor.
 void set_range(Json& accessor, std::span<const glm::vec3> positions) {
@@ -90,18 +33,6 @@ void set_range(Json& accessor, std::span<const glm::vec3> positions) {
   accessor["max"] = {high.x, high.y, high.z};
 }
 
-// glTF takes JPEG and PNG, and WebP by an extension that tiles use; anything else is turned into PNG.
-Result<EncodedTexture> image_for_gltf(const Texture& texture, GltfLook look) {
-  auto encoded = encoded_texture(texture);
-  if (!encoded || encoded->mime_type == "image/jpeg" || encoded->mime_type == "image/png") return encoded;
-  if (look == GltfLook::Photograph && encoded->mime_type == webp) return encoded;
-  auto image = decode_image(encoded->bytes, texture.name);
-  if (!image) return image.error();
-  auto png = encode_png(*image);
-  if (!png) return png.error();
-  return EncodedTexture{std::move(*png), "image/png"};
-}
-
 class GlbWriter {
  public:
   // The finest level first; all have the surroundings of the first.
@@ -110,7 +41,7 @@ class GlbWriter {
     for (const GltfLevel& level : levels) parts_.push_back({level.mesh, {}, {}, {}, false, level.least_coverage});
   }
   [[nodiscard]] Status plan(std::vector<Warning>& warnings);
-  [[nodiscard]] std::uint64_t total_bytes() const { return 12 + 8 + json_.size() + 8 + binary_bytes_; }
+  [[nodiscard]] std::uint64_t total_bytes() const { return 12 + 8 + json_.size() + 8 + layout_.size(); }
   void write(BlockWriter& out) const;
 
  private:
@@ -126,12 +57,9 @@ class GlbWriter {
     std::uint64_t gap;
     std::vector<std::uint8_t> bytes;
   };
-  int add_view(std::uint64_t size, int target);
-  int add_packed_view(const packing::View& view, int target, std::vector<std::uint8_t> bytes);
   int add_packed_floats(std::span<const float> values, std::size_t components, const char* shape, int exponent);
   [[nodiscard]] Json plan_packed_attributes(const Part& part);
   int add_indices(const Part& part, const std::vector<FaceId>& faces);
-  int add_accessor(int view, int type, std::uint64_t count, const char* shape);
   void plan_faces(Part& part) const;
   void plan_features(std::vector<Warning>& warnings);
   void plan_table();
@@ -141,60 +69,27 @@ class GlbWriter {
   [[nodiscard]] Json feature_ids(const Part& part, const std::vector<FaceId>& faces) const;
   [[nodiscard]] Json plan_primitives(const Part& part);
   void plan_levels(Json& node);
-  void name_packing();
-  void plan_textures(std::vector<Warning>& warnings);
-  [[nodiscard]] Json material_json(const Material& material) const;
   static void write_vertices(const Part& part, BlockWriter& out);
   static void write_indices(const Part& part, BlockWriter& out);
 
   const Mesh& first_;
   GltfLook look_;
   std::optional<GltfPacking> packing_;
-  std::vector<std::vector<std::uint8_t>> packed_;  // vertices and indices, in place of the meshes' own
-  std::uint64_t unpacked_bytes_ = 0;               // of the buffer that is not there
   std::vector<Part> parts_;
   Json root_;
   std::string json_;
-  std::uint64_t binary_bytes_ = 0;
-  std::vector<EncodedTexture> images_;
-  std::vector<int> texture_ids_;  // -1 for those left out
+  GltfLayout layout_{root_};
+  GltfSurfaces surfaces_;
   FeatureRows rows_;
   std::vector<Column> metadata_;
 };
 
-int GlbWriter::add_view(std::uint64_t size, int target) {
-  Json view{{"buffer", 0}, {"byteOffset", binary_bytes_}, {"byteLength", size}};
-  if (target != 0) view["target"] = target;
-  root_["bufferViews"].push_back(std::move(view));
-  binary_bytes_ += padded(size);
-  return static_cast<int>(root_["bufferViews"].size()) - 1;
-}
-
-// The view itself lies in a buffer that is not there; where its bytes are the extension says.
-int GlbWriter::add_packed_view(const packing::View& view, int target, std::vector<std::uint8_t> bytes) {
-  Json json{{"buffer", 1}, {"byteOffset", unpacked_bytes_}, {"byteLength", view.count * view.stride}};
-  if (target == ArrayBuffer) json["byteStride"] = view.stride;
-  json["target"] = target;
-  Json& packed = json["extensions"][meshopt];
-  packed = {{"buffer", 0},
-            {"byteOffset", binary_bytes_},
-            {"byteLength", bytes.size()},
-            {"byteStride", view.stride},
-            {"count", view.count},
-            {"mode", view.mode}};
-  if (!view.filter.empty()) packed["filter"] = view.filter;
-  root_["bufferViews"].push_back(std::move(json));
-  unpacked_bytes_ += padded(view.count * view.stride);
-  binary_bytes_ += padded(bytes.size());
-  packed_.push_back(std::move(bytes));
-  return static_cast<int>(root_["bufferViews"].size()) - 1;
-}
-
 int GlbWriter::add_packed_floats(std::span<const float> values, std::size_t components, const char* shape,
                                  int exponent) {
   const packing::View view{values.size() / components, 4 * components, "ATTRIBUTES", "EXPONENTIAL"};
-  return add_accessor(add_packed_view(view, ArrayBuffer, packing::pack_floats(values, components, exponent)), Float,
-                      view.count, shape);
+  return layout_.add_accessor(
+      layout_.add_packed_view(view, ArrayBuffer, packing::pack_floats(values, components, exponent)), Float, view.count,
+      shape);
 }
 
 Json GlbWriter::plan_packed_attributes(const Part& part) {
@@ -205,7 +100,8 @@ Json GlbWriter::plan_packed_attributes(const Part& part) {
   };
   const auto add_normalized = [&](const packing::View& view, std::vector<std::uint8_t> bytes, int type,
                                   const char* shape) {
-    const int accessor = add_accessor(add_packed_view(view, ArrayBuffer, std::move(bytes)), type, count, shape);
+    const int accessor =
+        layout_.add_accessor(layout_.add_packed_view(view, ArrayBuffer, std::move(bytes)), type, count, shape);
     root_["accessors"][accessor]["normalized"] = true;
     return accessor;
   };
@@ -234,8 +130,9 @@ Json GlbWriter::plan_packed_attributes(const Part& part) {
   if (!part.vertex_rows.empty()) {
     const std::vector<float> ids(part.vertex_rows.begin(), part.vertex_rows.end());
     const std::vector<std::uint8_t> raw = bytes_of(std::as_bytes(std::span{ids}));
-    attributes["_FEATURE_ID_0"] = add_accessor(
-        add_packed_view({count, 4, "ATTRIBUTES", {}}, ArrayBuffer, packing::pack_raw(raw, 4)), Float, count, "SCALAR");
+    attributes["_FEATURE_ID_0"] = layout_.add_accessor(
+        layout_.add_packed_view({count, 4, "ATTRIBUTES", {}}, ArrayBuffer, packing::pack_raw(raw, 4)), Float, count,
+        "SCALAR");
   }
   return attributes;
 }
@@ -244,20 +141,15 @@ int GlbWriter::add_indices(const Part& part, const std::vector<FaceId>& faces) {
   const std::uint64_t count = 3 * faces.size();
   const int type = part.short_indices ? UnsignedShort : UnsignedInt;
   const std::uint64_t size = part.short_indices ? 2 : 4;
-  if (!packing_) return add_accessor(add_view(count * size, ElementArrayBuffer), type, count, "SCALAR");
+  if (!packing_) return layout_.add_accessor(layout_.add_view(count * size, ElementArrayBuffer), type, count, "SCALAR");
   std::vector<std::uint32_t> corners;
   for (const FaceId f : faces) {
     const VertexId* v = &part.mesh->indices[3 * std::size_t{f}];
     corners.insert(corners.end(), v, v + 3);
   }
   const int view =
-      add_packed_view({count, size, "TRIANGLES", {}}, ElementArrayBuffer, packing::pack_triangles(corners));
-  return add_accessor(view, type, count, "SCALAR");
-}
-
-int GlbWriter::add_accessor(int view, int type, std::uint64_t count, const char* shape) {
-  root_["accessors"].push_back({{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
-  return static_cast<int>(root_["accessors"].size()) - 1;
+      layout_.add_packed_view({count, size, "TRIANGLES", {}}, ElementArrayBuffer, packing::pack_triangles(corners));
+  return layout_.add_accessor(view, type, count, "SCALAR");
 }
 
 void GlbWriter::plan_faces(Part& part) const {
@@ -292,10 +184,9 @@ void GlbWriter::plan_features(std::vector<Warning>& warnings) {
 }
 
 int GlbWriter::add_metadata(std::vector<std::uint8_t> bytes) {
-  const std::uint64_t gap = padded_to_8(binary_bytes_) - binary_bytes_;
-  binary_bytes_ += gap;
+  const std::uint64_t gap = layout_.align_to_8();
   metadata_.push_back({gap, std::move(bytes)});
-  return add_view(metadata_.back().bytes.size(), 0);
+  return layout_.add_view(metadata_.back().bytes.size(), 0);
 }
 
 void GlbWriter::add_column(const char* name, const Json& type, std::vector<std::uint8_t> bytes,
@@ -336,18 +227,21 @@ Json GlbWriter::plan_attributes(const Part& part) {
   const VertexArrays& v = part.mesh->vertices;
   const std::uint64_t count = v.size();
   Json attributes;
-  const int positions = add_accessor(add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
+  const int positions = layout_.add_accessor(layout_.add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
   set_range(root_["accessors"][positions], turned_positions(v));
   attributes["POSITION"] = positions;
-  if (!v.normals.empty()) attributes["NORMAL"] = add_accessor(add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
-  if (!v.uvs.empty()) attributes["TEXCOORD_0"] = add_accessor(add_view(8 * count, ArrayBuffer), Float, count, "VEC2");
+  if (!v.normals.empty())
+    attributes["NORMAL"] = layout_.add_accessor(layout_.add_view(12 * count, ArrayBuffer), Float, count, "VEC3");
+  if (!v.uvs.empty())
+    attributes["TEXCOORD_0"] = layout_.add_accessor(layout_.add_view(8 * count, ArrayBuffer), Float, count, "VEC2");
   if (!v.colors.empty()) {
-    const int colors = add_accessor(add_view(8 * count, ArrayBuffer), UnsignedShort, count, "VEC4");
+    const int colors = layout_.add_accessor(layout_.add_view(8 * count, ArrayBuffer), UnsignedShort, count, "VEC4");
     root_["accessors"][colors]["normalized"] = true;
     attributes["COLOR_0"] = colors;
   }
   if (!part.vertex_rows.empty()) {
-    attributes["_FEATURE_ID_0"] = add_accessor(add_view(4 * count, ArrayBuffer), Float, count, "SCALAR");
+    attributes["_FEATURE_ID_0"] =
+        layout_.add_accessor(layout_.add_view(4 * count, ArrayBuffer), Float, count, "SCALAR");
   }
   return attributes;
 }
@@ -380,71 +274,6 @@ void GlbWriter::plan_levels(Json& node) {
   root_["extensionsUsed"].push_back("MSFT_lod");
 }
 
-void GlbWriter::plan_textures(std::vector<Warning>& warnings) {
-  bool has_webp = false;
-  for (const Texture& texture : first_.textures) {
-    texture_ids_.push_back(-1);
-    auto encoded = image_for_gltf(texture, look_);
-    if (!encoded) {
-      warnings.push_back({"a texture was left out: it " + encoded.error().message, encoded.error().where});
-      continue;
-    }
-    texture_ids_.back() = static_cast<int>(images_.size());
-    images_.push_back(std::move(*encoded));
-    const EncodedTexture& image = images_.back();
-    root_["images"].push_back(
-        {{"name", texture.name}, {"mimeType", image.mime_type}, {"bufferView", add_view(image.bytes.size(), 0)}});
-    if (image.mime_type != webp) {
-      root_["textures"].push_back({{"source", texture_ids_.back()}});
-      continue;
-    }
-    Json json;
-    json["extensions"]["EXT_texture_webp"] = {{"source", texture_ids_.back()}};
-    root_["textures"].push_back(std::move(json));
-    has_webp = true;
-  }
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    if (has_webp) root_[list].push_back("EXT_texture_webp");
-  }
-  if (look_ == GltfLook::Lit || images_.empty()) return;
-  constexpr int linear = 9729;
-  constexpr int linear_mipmap_linear = 9987;
-  constexpr int clamp_to_edge = 33071;
-  root_["samplers"].push_back(
-      {{"magFilter", linear}, {"minFilter", linear_mipmap_linear}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}});
-  for (Json& texture : root_["textures"]) texture["sampler"] = 0;
-  root_["extensionsUsed"].push_back("KHR_materials_unlit");
-}
-
-Json GlbWriter::material_json(const Material& material) const {
-  Json pbr{{"metallicFactor", 0.0}};
-  const glm::vec4& c = material.base_color;
-  const auto linear = [](float value) { return srgb_to_linear(std::clamp(static_cast<double>(value), 0.0, 1.0)); };
-  pbr["baseColorFactor"] = {linear(c.r), linear(c.g), linear(c.b), std::clamp(static_cast<double>(c.a), 0.0, 1.0)};
-  const bool textured = material.texture != none && texture_ids_[material.texture] >= 0;
-  if (textured) pbr["baseColorTexture"] = {{"index", texture_ids_[material.texture]}};
-  Json json{{"name", material.name}, {"pbrMetallicRoughness", std::move(pbr)}};
-  if (material.alpha_cutoff > 0.0F) {
-    json["alphaMode"] = "MASK";
-    json["alphaCutoff"] = material.alpha_cutoff;
-  } else if (material.transparent()) {
-    json["alphaMode"] = "BLEND";
-  }
-  if (material.double_sided) json["doubleSided"] = true;
-  if (textured && look_ == GltfLook::Photograph) json["extensions"]["KHR_materials_unlit"] = Json::object();
-  return json;
-}
-
-void GlbWriter::name_packing() {
-  Json absent{{"byteLength", unpacked_bytes_}};
-  absent["extensions"][meshopt] = {{"fallback", true}};
-  root_["buffers"].push_back(std::move(absent));
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    root_[list].push_back(meshopt);
-    if (!first_.vertices.normals.empty()) root_[list].push_back("KHR_mesh_quantization");
-  }
-}
-
 Status GlbWriter::plan(std::vector<Warning>& warnings) {
   root_["asset"] = {{"version", "2.0"}, {"generator", "Lodestone"}};
   root_["scene"] = 0;
@@ -466,12 +295,10 @@ Status GlbWriter::plan(std::vector<Warning>& warnings) {
     root_["nodes"].push_back(std::move(node));
   }
   if (!empty) {
-    plan_textures(warnings);
-    for (const Material& material : first_.materials) root_["materials"].push_back(material_json(material));
+    surfaces_.plan(first_, look_, root_, layout_, warnings);
     plan_table();
   }
-  if (binary_bytes_ > 0) root_["buffers"].push_back({{"byteLength", binary_bytes_}});
-  if (!packed_.empty()) name_packing();
+  layout_.name_buffers(!first_.vertices.normals.empty());
   json_ = root_.dump(-1, ' ', false, Json::error_handler_t::replace);
   json_.resize(padded(json_.size()), ' ');
   if (total_bytes() > std::numeric_limits<std::uint32_t>::max()) {
@@ -509,7 +336,7 @@ void GlbWriter::write_indices(const Part& part, BlockWriter& out) {
 }
 
 void GlbWriter::write(BlockWriter& out) const {
-  const bool has_binary = binary_bytes_ > 0;
+  const bool has_binary = layout_.size() > 0;
   out.text("glTF");
   out.raw(std::uint32_t{2});
   out.raw(static_cast<std::uint32_t>(has_binary ? total_bytes() : total_bytes() - 8));
@@ -517,7 +344,7 @@ void GlbWriter::write(BlockWriter& out) const {
   out.text("JSON");
   out.text(json_);
   if (!has_binary) return;
-  out.raw(static_cast<std::uint32_t>(binary_bytes_));
+  out.raw(static_cast<std::uint32_t>(layout_.size()));
   out.text(std::string_view{"BIN\0", 4});
   for (const Part& part : parts_) {
     if (packing_) break;
@@ -528,8 +355,8 @@ void GlbWriter::write(BlockWriter& out) const {
     out.text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     out.text(std::string(padded(bytes.size()) - bytes.size(), '\0'));
   };
-  for (const auto& view : packed_) write_padded(view);
-  for (const EncodedTexture& image : images_) write_padded(image.bytes);
+  for (const auto& view : layout_.packed()) write_padded(view);
+  for (const EncodedTexture& image : surfaces_.images()) write_padded(image.bytes);
   for (const Column& column : metadata_) {
     out.text(std::string(column.gap, '\0'));
     write_padded(column.bytes);
