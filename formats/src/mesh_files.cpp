@@ -109,6 +109,13 @@ std::string crs_beside(const Input& input) {
   return crs_of_text({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
 }
 
+// Says what the reader left out, if anything: that may have been all.
+Error no_faces(const Input& input, const std::vector<Warning>& warnings) {
+  std::string message = "has no face that can be used";
+  if (!warnings.empty()) message += " (" + warnings.front().message + ")";
+  return Error{ErrorCode::BadData, message + "; a surface of triangles or polygons is needed", input.name()};
+}
+
 }  // namespace
 
 ReadFunction find_reader(const Input& input) {
@@ -138,7 +145,7 @@ Result<LoadedMesh> read_input(const Input& input, const ReadOptions& options, co
   Warnings warnings;
   warnings.add_all(std::move(loaded.warnings()));
   tidy(mesh, warnings);
-  if (mesh.indices.empty()) warnings.add("there are no faces", input.name());
+  if (mesh.indices.empty()) return no_faces(input, warnings.take());
   if (auto valid = validate(mesh); !valid) {
     return Error{ErrorCode::BadData, valid.error().message + " (" + valid.error().where + ")", input.name()};
   }
