@@ -299,10 +299,10 @@ class RecordCodec : protected Replay<Space, Io> {
       code_new(io, EditValues, slot, guess, !same);
       std::copy_n(words, 3, last.begin());
     }
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      moved[i] = Base::code_name(io, EditMoved, Base::words_.vertices, moved[i], Base::last_vertex_);
-      if (moved[i] >= first) return "a vertex moves that one of the levels does not use";
-      code_move(io, EditValues, moved[i], Base::guess_like(moved[i]));
+    for (std::uint32_t& slot : moved) {
+      slot = Base::code_name(io, EditMoved, Base::words_.vertices, slot, Base::last_vertex_);
+      if (slot >= first) return "a vertex moves that one of the levels does not use";
+      code_move(io, EditValues, slot, Base::guess_like(slot));
     }
     return fine;
   }
