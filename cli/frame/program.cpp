@@ -101,6 +101,10 @@ int run_program(const Verbs& verbs, int argc, char** argv) {
     return session.finish(Error{ErrorCode::BadArgument, std::string{fault.what()} + "; see lodestone --help", ""});
   }
   Session session{common};
+  constexpr std::uint64_t least_memory_bytes = 32'000'000;  // what the program is before it does anything
+  if (common.max_memory_bytes != 0 && common.max_memory_bytes < least_memory_bytes) {
+    return session.finish(Error{ErrorCode::BadArgument, "--max-memory: less than 32MB cannot be kept to", ""});
+  }
   return session.finish(run_guarded(*chosen, session));
 }
 

@@ -2,6 +2,8 @@
 #include <lodestone/discrete_levels.h>
 #include <lodestone/formats.h>
 
+#include <limits>
+
 #include "level_choice.h"
 #include "verbs.h"
 
@@ -37,7 +39,7 @@ class Extract final : public Verb {
   std::filesystem::path output_;
   std::filesystem::path plan_;
   LevelChoice level_;
-  std::uint64_t bytes_ = 0;
+  std::uint64_t bytes_ = std::numeric_limits<std::uint64_t>::max();
 };
 
 Status Extract::run(Session& session) {
@@ -48,6 +50,7 @@ Status Extract::run(Session& session) {
                  "--plan) and --plan",
                  ""};
   }
+  if (bytes_ == 0) return Error{ErrorCode::BadArgument, "--bytes: no model is in no bytes", ""};
   auto model = read_model(model_, {.max_bytes = bytes_}, session.context());
   session.keep(model);
   if (!model) return model.error();

@@ -11,6 +11,7 @@ void MeshInput::declare(Arguments& arguments, const std::string& name, const std
 }
 
 Result<LoadedMesh> MeshInput::read(Session& session, LoadTextures textures) const {
+  if (unit_m_ == 0.0) return Error{ErrorCode::BadArgument, "--unit: a unit of no length measures nothing", ""};
   ReadOptions options{.unit_m = unit_m_.value_or(0.0), .crs = crs_.value_or(""), .textures = textures};
   if (up_ == "y") options.up = UpAxis::Y;
   if (up_ == "z") options.up = UpAxis::Z;

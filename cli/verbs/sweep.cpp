@@ -92,6 +92,9 @@ Status Sweep::keep_frame(const Image& image, std::uint32_t frame, GifWriter* vid
 }
 
 Status Sweep::run(Session& session) {
+  if (!video_.empty() && video_.extension() != ".gif") {
+    return Error{ErrorCode::BadArgument, "films are written as .gif", video_.string()};
+  }
   auto options = this->options();
   if (!options) return options.error();
   auto model = read_model(model_, {}, session.context());

@@ -439,6 +439,10 @@ class Failures(Contract):
         self.fails(1, "extract", self.model, "--level", 99999999, "-o", self.scratch / "a.obj")
         self.assertIn("'5ft'", self.fails(1, "extract", self.model, "--error", "5ft", "-o", self.scratch / "a.obj"))
         self.assertIn(".lode", self.fails(1, "build", self.house, "-o", self.scratch / "a.obj"))
+        self.assertIn("--bytes", self.fails(1, "extract", self.model, "--level", 0, "--bytes", 0, "-o", self.scratch / "a.obj"))
+        self.assertIn("--unit", self.fails(1, "inspect", self.house, "--unit", 0))
+        self.assertIn("--max-memory", self.fails(1, "inspect", self.house, "--max-memory", 1))
+        self.assertIn(".gif", self.fails(1, "sweep", self.model, "--video", self.scratch / "a.mp4"))
         self.fails(1, "generate", "castle", "-o", self.scratch / "a.obj")
         self.fails(1, "generate", "terrain", "--roof", "hip", "-o", self.scratch / "a.obj")
 
@@ -487,6 +491,17 @@ class Failures(Contract):
             self.assertIn(name, self.fails(2, "inspect", bad))
         self.assertIn("a.lode", self.fails(2, "verify", self.scratch / "a.lode"))
         self.fails(2, "inspect", self.scratch)
+
+    def test_no_surface_is_no_input(self):
+        points = self.scratch / "points.obj"
+        points.write_text("v 0 0 0\nv 1 0 0\nl 1 2\n")
+        for words in (("inspect",), ("convert", "-o", self.scratch / "a.ply"), ("build", "-o", self.scratch / "a.lode"),
+                      ("clusters", "-o", self.scratch / "a.lodg"), ("outcrop", "-o", self.scratch / "tiles"),
+                      ("render", "-o", self.scratch / "a.png"), ("compare", self.house)):
+            line = self.fails(2, words[0], points, *words[1:])
+            self.assertIn("points.obj: has no face", line)
+            self.assertIn("lines and points are left out", line)
+        self.assertEqual(list(self.scratch.iterdir()), [points])
 
     def test_models_that_are_broken_on_purpose_are_read_or_refused(self):
         folder = Path("/usr/share/assimp/models/invalid")
