@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Drives the window as a person would, on a display of its own: opens MODEL coloured by triangle size, takes a picture,
-# drags the slider to the left, takes another, presses "+" until it is fine again, takes a third.
-# usage: drive_window.sh VIEWER MODEL FOLDER   ->  FOLDER/fine.png, coarse.png, again.png
+# drags the slider to the left, takes another, presses "+" until it is fine again, takes a third, drops file SECOND on it
+# (by drop_file), takes a fourth.
+# usage: drive_window.sh VIEWER MODEL FOLDER DROPPER SECOND   ->  FOLDER/fine.png, coarse.png, again.png, dropped.png
 # Exit code 77: a tool is missing (its name is printed). 78: the X server failed, not the viewer (worth another try).
 set -eu
-viewer=$1 model=$2 out=$3
+viewer=$1 model=$2 out=$3 dropper=$4 second=$5
 for tool in Xvfb xdotool import convert; do
   command -v "$tool" > /dev/null || { echo "missing $tool"; exit 77; }
 done
@@ -63,12 +64,13 @@ wait_for 30 xdotool getdisplaygeometry > /dev/null 2>&1 || server_failed "does n
 "$viewer" "$model" --width 1000 --height 640 --lod-colors 2> "$out/stderr" &
 viewer_pid=$!
 window=
-find_window() {
+# shows FILE: once the window has its name.
+shows() {
   kill -0 "$viewer_pid" 2> /dev/null || viewer_ended
-  window=$(xdotool search --name "$(basename "$model") - Lodestone" 2> /dev/null | head -n 1)
+  window=$(xdotool search --name "$(basename "$1") - Lodestone" 2> /dev/null | head -n 1)
   [ -n "$window" ]
 }
-wait_for 120 find_window || { echo "the window never showed the model"; exit 1; }
+wait_for 120 shows "$model" || { echo "the window never showed the model"; exit 1; }
 
 # look NAME: takes the picture; `now` becomes a number for what is drawn right of the panel, whose graph of frame times
 # never rests.
@@ -113,3 +115,6 @@ for _ in $(seq 25); do
   sleep 0.05
 done
 picture again
+"$dropper" "$window" "$second"
+wait_for 60 shows "$second" || { echo "the window never showed what was dropped on it"; exit 1; }
+picture dropped

@@ -43,11 +43,19 @@ int run(const std::string& command) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+// Four large triangles, to be dropped on the window.
+std::filesystem::path tent_file(const std::filesystem::path& folder) {
+  const auto file = folder / "tent.obj";
+  std::ofstream{file} << "v 0 0 0\nv 6 0 0\nv 6 6 0\nv 0 6 0\nv 3 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+  return file;
+}
+
 // Runs drive_window.sh once; what it printed goes to `log`.
 int drive(const std::string& program, const std::filesystem::path& folder, std::string& log) {
   const auto file = folder / "log";
-  const int code = run(std::string{"sh "} + LODESTONE_DRIVE_WINDOW + " " + program + " " + bumps_file(folder).string() +
-                       " " + folder.string() + " > " + file.string() + " 2>&1");
+  const int code =
+      run(std::string{"sh " LODESTONE_DRIVE_WINDOW " "} + program + " " + bumps_file(folder).string() + " " +
+          folder.string() + " " LODESTONE_DROP_FILE " " + tent_file(folder).string() + " > " + file.string() + " 2>&1");
   std::ifstream in{file};
   log.assign(std::istreambuf_iterator<char>{in}, {});
   return code;
@@ -68,6 +76,17 @@ double redness(const Image& image) {
   }
   REQUIRE(count > 1000.0);
   return sum / count;
+}
+
+// Columns of the panel's graph of frame times that differ.
+int changed_columns(const Image& a, const Image& b) {
+  int columns = 0;
+  for (std::uint32_t x = 24; x < 328; ++x) {
+    bool differs = false;
+    for (std::uint32_t y = 312; y < 352; ++y) differs = differs || a.at(x, y)[0] != b.at(x, y)[0];
+    columns += differs ? 1 : 0;
+  }
+  return columns;
 }
 
 Image picture(const std::filesystem::path& file) {
@@ -100,7 +119,8 @@ bool display_is_missing() {
 
 }  // namespace
 
-TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys refine it again") {
+TEST_CASE(
+    "the window: the slider coarsens what is drawn, keys refine it, frame times are drawn, a dropped file is shown") {
   const auto folder = test::scratch_folder("window_driven");
   std::string log;
   int code = drive(LODESTONE_VIEW_PROGRAM, folder, log);
@@ -121,6 +141,8 @@ TEST_CASE("dragging the slider of the window coarsens what is drawn, and keys re
   CHECK(redness(fine) < -20.0);
   CHECK(redness(coarse) > 20.0);
   CHECK(redness(again) == Approx(redness(fine)).margin(5.0));
+  CHECK(changed_columns(fine, again) > 20);                 // the times of frames move on
+  CHECK(redness(picture(folder / "dropped.png")) > 100.0);  // all of it, where the coarse one had a mean
 }
 
 TEST_CASE("the window opens a tileset or a cluster graph and loads what its camera needs") {
