@@ -63,7 +63,7 @@ struct LoadedMesh {
 [[nodiscard]] Status check_output(const std::filesystem::path& file);
 
 /// Reads OBJ+MTL, PLY, glTF 2.0 / GLB (also packed with Draco or meshopt), 3DS, CityJSON 1.1 and 2.0, CityGML 2.0, and
-/// else assimp reads (IFC, DAE, ...); no face is an error. A .lode file gives its finest level, a .lodg file its leaves.
+/// else assimp reads (IFC, ...); no face is an error. A .lode file gives its finest level, a .lodg file its leaves.
 [[nodiscard]] Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOptions& options = {},
                                            const Context& context = {});
 
