@@ -121,7 +121,6 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
                  input_.file().string()};
   }
   if (is_tileset_file(input_.file())) return draw_tiles(session, options);
-  if (input_.file().extension() == ".osgb") return is_for_openscenegraph(input_.file());
   if (is_cluster_file(input_.file())) return draw_clusters(options);
   const auto loaded = input_.read(session);
   if (!loaded) return loaded.error();

@@ -2,7 +2,6 @@
 #include "frame.h"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -29,18 +28,6 @@ Result<Frame> Frame::create(const Gl& gl, const FrameSize& size) {
   const GLint samples =
       size.coverage_samples > 1 ? std::min(static_cast<GLint>(size.coverage_samples), max_samples) : 0;
   Frame frame{gl, size};
-  gl.gen_renderbuffers(1, &frame.color_);
-  gl.bind_renderbuffer(GL_RENDERBUFFER, frame.color_);
-  gl.renderbuffer_storage_multisample(GL_RENDERBUFFER, samples, GL_SRGB8_ALPHA8, w, h);
-  gl.gen_renderbuffers(1, &frame.depth_);
-  gl.bind_renderbuffer(GL_RENDERBUFFER, frame.depth_);
-  gl.renderbuffer_storage_multisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, w, h);
-  gl.gen_framebuffers(1, &frame.draw_framebuffer_);
-  gl.bind_framebuffer(GL_FRAMEBUFFER, frame.draw_framebuffer_);
-  gl.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, frame.color_);
-  gl.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, frame.depth_);
-  const bool drawable = gl.check_framebuffer_status(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-
   gl.gen_textures(1, &frame.texture_);
   gl.bind_texture(GL_TEXTURE_2D, frame.texture_);
   gl.tex_image_2d(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -49,7 +36,23 @@ Result<Frame> Frame::create(const Gl& gl, const FrameSize& size) {
   gl.gen_framebuffers(1, &frame.resolve_framebuffer_);
   gl.bind_framebuffer(GL_FRAMEBUFFER, frame.resolve_framebuffer_);
   gl.framebuffer_texture_2d(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, frame.texture_, 0);
-  if (!drawable || gl.check_framebuffer_status(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+  const bool readable = gl.check_framebuffer_status(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+
+  gl.gen_renderbuffers(1, &frame.depth_);
+  gl.bind_renderbuffer(GL_RENDERBUFFER, frame.depth_);
+  gl.renderbuffer_storage_multisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, w, h);
+  gl.gen_framebuffers(1, &frame.draw_framebuffer_);
+  gl.bind_framebuffer(GL_FRAMEBUFFER, frame.draw_framebuffer_);
+  gl.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, frame.depth_);
+  if (samples == 0) {  // nothing to resolve: straight into the texture
+    gl.framebuffer_texture_2d(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, frame.texture_, 0);
+  } else {
+    gl.gen_renderbuffers(1, &frame.color_);
+    gl.bind_renderbuffer(GL_RENDERBUFFER, frame.color_);
+    gl.renderbuffer_storage_multisample(GL_RENDERBUFFER, samples, GL_SRGB8_ALPHA8, w, h);
+    gl.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, frame.color_);
+  }
+  if (!readable || gl.check_framebuffer_status(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     return Error{ErrorCode::Unsupported, "the graphics driver refused a multisampled sRGB framebuffer", ""};
   }
   return frame;
@@ -84,6 +87,11 @@ Frame::~Frame() {
   gl_->delete_textures(1, &texture_);
 }
 
+Image Frame::read() const {
+  gl_->bind_framebuffer(GL_FRAMEBUFFER, resolve_framebuffer_);
+  return read_framebuffer(*gl_, size_.width_px * size_.supersample, size_.height_px * size_.supersample);
+}
+
 void Frame::begin() const {
   gl_->bind_framebuffer(GL_FRAMEBUFFER, draw_framebuffer_);
   gl_->viewport(0, 0, static_cast<GLsizei>(size_.width_px * size_.supersample),
@@ -94,22 +102,23 @@ void Frame::begin() const {
 void Frame::end() const {
   const auto w = static_cast<GLint>(size_.width_px * size_.supersample);
   const auto h = static_cast<GLint>(size_.height_px * size_.supersample);
-  gl_->bind_framebuffer(GL_READ_FRAMEBUFFER, draw_framebuffer_);
-  gl_->bind_framebuffer(GL_DRAW_FRAMEBUFFER, resolve_framebuffer_);
-  gl_->blit_framebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  if (color_ != 0) {
+    gl_->bind_framebuffer(GL_READ_FRAMEBUFFER, draw_framebuffer_);
+    gl_->bind_framebuffer(GL_DRAW_FRAMEBUFFER, resolve_framebuffer_);
+    gl_->blit_framebuffer(0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  }
   gl_->disable(GL_FRAMEBUFFER_SRGB);
 }
 
 Image read_framebuffer(const Gl& gl, std::uint32_t width_px, std::uint32_t height_px) {
   const std::size_t row_bytes = static_cast<std::size_t>(width_px) * 3;
-  std::vector<std::uint8_t> rows(row_bytes * height_px);
+  Image image{.width = width_px, .height = height_px, .channels = 3, .pixels = {}};
+  image.pixels.resize(row_bytes * height_px);
   gl.pixel_store_i(GL_PACK_ALIGNMENT, 1);
   gl.read_pixels(0, 0, static_cast<GLsizei>(width_px), static_cast<GLsizei>(height_px), GL_RGB, GL_UNSIGNED_BYTE,
-                 rows.data());
-  Image image{.width = width_px, .height = height_px, .channels = 3, .pixels = {}};
-  image.pixels.resize(rows.size());
-  for (std::uint32_t y = 0; y < height_px; ++y) {
-    std::memcpy(image.at(0, y), rows.data() + (height_px - 1 - y) * row_bytes, row_bytes);
+                 image.pixels.data());
+  for (std::uint32_t y = 0; y < height_px / 2; ++y) {  // GL's rows go upwards
+    std::swap_ranges(image.at(0, y), image.at(0, y) + row_bytes, image.at(0, height_px - 1 - y));
   }
   return image;
 }
@@ -165,7 +174,10 @@ void Presenter::present_blend(const Frame& first, const Frame& second, double sh
   draw(first, second, share, target);
 }
 
-Image Presenter::read(const Frame& frame) { return read_blend(frame, frame, 0.0); }
+// A frame with one sample a pixel holds the picture as it is.
+Image Presenter::read(const Frame& frame) {
+  return frame.size().supersample == 1 ? frame.read() : read_blend(frame, frame, 0.0);
+}
 
 Image Presenter::read_blend(const Frame& first, const Frame& second, double share) {
   const FrameSize& size = first.size();

@@ -37,6 +37,8 @@ class Frame {
   /// Resolves what was drawn into texture().
   void end() const;
   [[nodiscard]] GLuint texture() const { return texture_; }
+  /// What texture() holds, as an upright RGB image of all samples.
+  [[nodiscard]] Image read() const;
 
  private:
   Frame(const Gl& gl, const FrameSize& size) noexcept : gl_(&gl), size_(size) {}
@@ -44,7 +46,7 @@ class Frame {
   FrameSize size_;
   GLuint draw_framebuffer_ = 0;
   GLuint resolve_framebuffer_ = 0;
-  GLuint color_ = 0;
+  GLuint color_ = 0;  ///< 0 where the texture is drawn into
   GLuint depth_ = 0;
   GLuint texture_ = 0;
 };

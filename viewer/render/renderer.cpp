@@ -45,14 +45,11 @@ Result<Renderer> Renderer::create(const Gl& gl) {
   if (!background) return background.error();
   auto plain = Program::create(gl, surface_vertex_shader, nullptr, surface_fragment_shader);
   if (!plain) return plain.error();
-  auto edges =
-      Program::create(gl, surface_vertex_shader, surface_geometry_shader, surface_fragment_shader, "#define EDGES\n");
-  if (!edges) return edges.error();
-  return Renderer{gl, std::move(background).value(), std::move(plain).value(), std::move(edges).value()};
+  return Renderer{gl, std::move(background).value(), std::move(plain).value()};
 }
 
-Renderer::Renderer(const Gl& gl, Program background, Program plain, Program edges)
-    : gl_(&gl), background_(std::move(background)), plain_(std::move(plain)), edges_(std::move(edges)) {
+Renderer::Renderer(const Gl& gl, Program background, Program plain)
+    : gl_(&gl), background_(std::move(background)), plain_(std::move(plain)) {
   gl.gen_vertex_arrays(1, &empty_vertex_array_);
 }
 
@@ -61,11 +58,24 @@ Renderer::Renderer(Renderer&& other) noexcept
       background_(std::move(other.background_)),
       plain_(std::move(other.plain_)),
       edges_(std::move(other.edges_)),
+      edges_refused_(other.edges_refused_),
       empty_vertex_array_(std::exchange(other.empty_vertex_array_, 0)),
       blended_(std::move(other.blended_)),
       blended_indices_(std::move(other.blended_indices_)) {}
 
 Renderer::~Renderer() { gl_->delete_vertex_arrays(1, &empty_vertex_array_); }
+
+// Compiled when first asked for: few pictures need it, and none should wait for it. A driver that refuses it shows
+// surfaces without lines.
+const Renderer::SurfaceProgram& Renderer::with_edges() {
+  if (!edges_ && !edges_refused_) {
+    auto made = Program::create(*gl_, surface_vertex_shader, surface_geometry_shader, surface_fragment_shader,
+                                "#define EDGES\n");
+    edges_refused_ = !made.ok();
+    if (made) edges_.emplace(std::move(made).value());
+  }
+  return edges_ ? *edges_ : plain_;
+}
 
 void Renderer::draw_background(const Look& look) const {
   const bool white = look.background == Background::White;
@@ -91,7 +101,7 @@ void Renderer::draw(const Frame& frame, const View& view, const Box& bounds, std
   const glm::mat4 to_clip{projection_matrix(view, bounds)};
   const glm::vec3 up{glm::dmat3{to_eye} * glm::dvec3{0.0, 0.0, 1.0}};
   const bool lod_colors = look.coloring == Coloring::Lod;
-  const SurfaceProgram& surface = look.wireframe || lod_colors ? edges_ : plain_;
+  const SurfaceProgram& surface = look.wireframe || lod_colors ? with_edges() : plain_;
   surface.program.use();
   gl_->uniform_matrix_4fv(surface.to_clip, 1, GL_FALSE, glm::value_ptr(to_clip));
   gl_->uniform_3f(surface.up, up.x, up.y, up.z);

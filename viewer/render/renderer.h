@@ -2,6 +2,7 @@
 // Draws geometry with its surfaces, lit, into a frame.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -54,8 +55,9 @@ class Renderer {
     MaterialId material;
     std::uint32_t first_index;
   };
-  Renderer(const Gl& gl, Program background, Program plain, Program edges);
+  Renderer(const Gl& gl, Program background, Program plain);
 
+  [[nodiscard]] const SurfaceProgram& with_edges();
   void draw_background(const Look& look) const;
   void set_item(const SurfaceProgram& program, const Item& item, const glm::dmat4& view) const;
   void set_surface(const SurfaceProgram& program, const Surface& surface, const Look& look, GLuint white) const;
@@ -65,7 +67,8 @@ class Renderer {
   const Gl* gl_;
   Program background_;
   SurfaceProgram plain_;
-  SurfaceProgram edges_;  ///< with wireframe and LOD colours
+  std::optional<SurfaceProgram> edges_;  ///< with wireframe and LOD colours
+  bool edges_refused_ = false;
   GLuint empty_vertex_array_ = 0;
   std::vector<BlendedTriangle> blended_;  ///< kept between frames for its memory
   std::vector<VertexId> blended_indices_;

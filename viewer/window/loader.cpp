@@ -9,7 +9,6 @@ namespace {
 
 Result<Loader::Opened> open(const std::filesystem::path& file, const std::filesystem::path& tile_cache,
                             const Context& context) {
-  if (file.extension() == ".osgb") return is_for_openscenegraph(file);
   if (is_tileset_file(file)) {
     std::optional<TileCacheOptions> cache;
     if (!tile_cache.empty()) cache = TileCacheOptions{.folder = tile_cache};

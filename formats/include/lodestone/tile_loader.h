@@ -42,15 +42,22 @@ struct TileCacheStatus {
   std::uint64_t bytes = 0;   ///< of all copies in the folder
 };
 
-/// An opened tileset.json; immutable, shared by threads. Understands boxes and spheres, glb and b3dm, one content per
-/// tile, refinement REPLACE.
+/// An opened tileset.json, or a tree of OpenSceneGraph files by its root; immutable, shared by threads. Of tilesets it
+/// understands boxes and spheres, glb and b3dm, one content per tile, refinement REPLACE.
+///
+/// OpenSceneGraph's files (PagedLOD, by pixel size or by distance) are read by the program lodestone-osgb, beside the
+/// program that runs or on the PATH: its library must not share a process with a software OpenGL. Opening walks through
+/// all files of the tree, without their textures, because each tile is known only to the one above it; tiles come one
+/// by one. An error is what covers a pixel in a picture of 1920 x 1080 at 46 degrees where OpenSceneGraph would switch
+/// there.
 class TilePyramid {
  public:
-  /// Reads the JSON only. The path may be an address of the web (http://, https://). With a cache tiles are looked for
-  /// there first; copies of a tileset that has changed are not used again, and what is wrong with the cache later (a
-  /// full disk, a damaged copy) costs time only. Errors: NotFound, Unreadable, BadData with what is missing.
+  /// Reads the JSON only, or the index of an .osgb tree (which needs no cache and has none). The path may be an address
+  /// of the web (http://, https://). With a cache tiles are looked for there first; copies of a tileset that has
+  /// changed are not used again, and what is wrong with the cache later (a full disk, a damaged copy) costs time only.
+  /// Errors: NotFound, Unreadable, BadData with what is missing.
   [[nodiscard]] static Result<std::shared_ptr<const TilePyramid>> open(
-      const std::filesystem::path& tileset_json, const std::optional<TileCacheOptions>& cache = std::nullopt);
+      const std::filesystem::path& root, const std::optional<TileCacheOptions>& cache = std::nullopt);
   ~TilePyramid();
   TilePyramid(const TilePyramid&) = delete;
   TilePyramid& operator=(const TilePyramid&) = delete;
@@ -128,11 +135,9 @@ class TilePager {
   std::unique_ptr<State> state_;
 };
 
-/// True if the file looks like a tileset.json; of an address of the web, if it ends with .json.
+/// True if TilePyramid::open() is for it: if the file looks like a tileset.json, or is named .osgb; of an address of
+/// the web, if it ends with .json.
 [[nodiscard]] bool is_tileset_file(const std::filesystem::path& file);
-
-/// What to say where an .osgb file is given: it is OpenSceneGraph's own.
-[[nodiscard]] Error is_for_openscenegraph(const std::filesystem::path& file);
 
 /// Several tiles as one mesh, each with its own textures, for those who want a picture and no pager.
 [[nodiscard]] Mesh merged(std::span<const Mesh* const> tiles);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// lodestone-osgb: a tileset of ours as a tree of OpenSceneGraph files, by OSG's own library. A program of its own
-// because that library brings libGL along, which must not meet OSMesa in one process.
+// lodestone-osgb: a tileset of ours as a tree of OpenSceneGraph files, by OSG's own library, and such trees read. A
+// program of its own because that library brings libGL along, which must not meet OSMesa in one process.
 //
 //     lodestone-osgb TILESET.json FOLDER      writes FOLDER/main.osgb and FOLDER/Data/*.osgb
+//     lodestone-osgb --serve MAIN.osgb        answers a program of ours on standard input, tile by tile
 //
 // Based on: Ao et al. 2025, sections 3.5.1 and 3.5.2 (PagedLOD, switching by pixel size).
-// Differs: the threshold is not the size of the tile's texture but the size at which the tile's error reaches a pixel,
-// by the formula that OSG uses: px = 2 R / z * sqrt(p^2 + (W^2 + H^2) / 8), p = H / (2 tan(fov_y / 2)).
+// Differs: the threshold is not the size of the tile's texture but the size at which the tile's error reaches a pixel.
 #include <osg/Geode>
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
@@ -16,7 +16,6 @@
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -24,25 +23,15 @@
 
 #include <lodestone/tile_loader.h>
 
+#include "osgb/serve.h"
+#include "osgb/switching.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 using lodestone::GroupId;
 using lodestone::Mesh;
 using lodestone::NodeId;
-
-// The view that thresholds are made for; others switch a little earlier or later.
-constexpr double width_px = 1920.0;
-constexpr double height_px = 1080.0;
-constexpr double fov_y_rad = 0.8;
-
-// Size on OSG's screen at which an error in the sphere's nearest point covers a pixel.
-float threshold_px(double radius_m, double error_m) {
-  const double focal_px = height_px / (2.0 * std::tan(fov_y_rad * 0.5));
-  const double z_m = error_m * focal_px + radius_m;
-  const double diagonal2 = (width_px * width_px + height_px * height_px) / 8.0;
-  return static_cast<float>(2.0 * radius_m / z_m * std::sqrt(focal_px * focal_px + diagonal2));
-}
 
 class Writer {
  public:
@@ -159,7 +148,8 @@ osg::ref_ptr<osg::Node> Writer::node_of(NodeId tile, bool in_root) {
   osg::ref_ptr<osg::Geode> geode = geode_of(tile, *mesh);
   if (made_by_[tile] == lodestone::none) return geode;
   const lodestone::Sphere& bounds = pyramid_.graph().nodes[tile].bounds;
-  const float switch_px = threshold_px(bounds.radius_m, pyramid_.graph().groups[made_by_[tile]].error_m);
+  const float switch_px =
+      lodestone::osgb::threshold_px(bounds.radius_m, pyramid_.graph().groups[made_by_[tile]].error_m);
   osg::ref_ptr<osg::PagedLOD> paged = new osg::PagedLOD;
   paged->setRangeMode(osg::LOD::PIXEL_SIZE_ON_SCREEN);
   paged->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
@@ -211,8 +201,9 @@ bool Writer::write() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && std::string_view{argv[1]} == "--serve") return lodestone::osgb::serve(argv[2]);
   if (argc != 3) {
-    std::fprintf(stderr, "usage: lodestone-osgb TILESET.json FOLDER\n");
+    std::fprintf(stderr, "usage: lodestone-osgb TILESET.json FOLDER | lodestone-osgb --serve MAIN.osgb\n");
     return 1;
   }
   const auto pyramid = lodestone::TilePyramid::open(argv[1]);

@@ -134,7 +134,10 @@ Result<Tileset> read_tileset(const std::filesystem::path& file) {
   return tileset;
 }
 
+bool is_osgb(const std::filesystem::path& file) { return file.extension() == ".osgb"; }
+
 bool is_tileset_file(const std::filesystem::path& file) {
+  if (is_osgb(file)) return true;
   if (file.extension() != ".json") return false;
   if (is_address(file)) return true;
   const auto input = Input::open(file, most_tileset_bytes);

@@ -37,6 +37,9 @@ constexpr std::uint64_t most_tileset_bytes = 256ULL << 20;
 [[nodiscard]] Result<Tileset> read_tileset(const std::filesystem::path& file);
 [[nodiscard]] Result<Tileset> parse_tileset(std::span<const std::uint8_t> bytes, const std::string& name);
 
+// By its name: the root of a tree of OpenSceneGraph files.
+[[nodiscard]] bool is_osgb(const std::filesystem::path& file);
+
 struct LoadedTile {
   Mesh mesh;  // in the frame of the root's content
   std::uint64_t file_bytes = 0;

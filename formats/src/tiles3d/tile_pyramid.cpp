@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "tiles3d/fetch.h"
+#include "tiles3d/osgb_files.h"
 #include "tiles3d/read_tileset.h"
 #include "tiles3d/tileset_json.h"
 
@@ -16,7 +17,9 @@ struct TilePyramid::Content {
   Tileset tileset;
   LodGraph graph;
   std::vector<std::uint32_t> tile_of_node;
+  [[nodiscard]] Status make_graph(const std::string& name);
   std::unique_ptr<TileCache> cache;  // has a lock of its own
+  std::unique_ptr<OsgbFiles> osgb;   // of an .osgb root; likewise
 };
 
 namespace {
@@ -31,25 +34,46 @@ std::uint64_t source_of(const std::filesystem::path& tileset_json, std::span<con
   return build ? XXH64(build->data(), build->size(), hash) : hash;
 }
 
+Result<std::vector<std::uint8_t>> index_of(OsgbFiles& files) {
+  const auto text = files.index();
+  if (!text) return text.error();
+  return std::vector<std::uint8_t>(text->begin(), text->end());
+}
+
 }  // namespace
 
 TilePyramid::TilePyramid() = default;
 TilePyramid::~TilePyramid() = default;
 
-Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesystem::path& tileset_json,
+Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesystem::path& root,
                                                              const std::optional<TileCacheOptions>& cache) {
-  const auto text = fetch(tileset_json, most_tileset_bytes);
+  std::shared_ptr<TilePyramid> out{new TilePyramid};
+  out->content_ = std::make_unique<Content>();
+  Content& content = *out->content_;
+  if (is_osgb(root)) content.osgb = std::make_unique<OsgbFiles>(root);
+  const auto text = content.osgb ? index_of(*content.osgb) : fetch(root, most_tileset_bytes);
   if (!text) return text.error();
-  auto tileset = parse_tileset(*text, tileset_json.string());
+  auto tileset = parse_tileset(*text, root.string());
   if (!tileset) return tileset.error();
-  tileset->folder = tileset_json.parent_path();
+  content.tileset = std::move(*tileset);
+  content.tileset.folder = root.parent_path();
+  if (Status status = content.make_graph(root.string()); !status) return status.error();
+  if (cache && !content.osgb) {
+    auto opened = TileCache::open(*cache, source_of(root, *text));
+    if (!opened) return opened.error();
+    content.cache = std::move(*opened);
+  }
+  return std::shared_ptr<const TilePyramid>{std::move(out)};
+}
+
+Status TilePyramid::Content::make_graph(const std::string& name) {
   std::vector<GroupDraft> groups;
   std::vector<NodeDraft> nodes;
-  std::vector<GroupId> group_of(tileset->tiles.size(), none);
-  for (std::uint32_t i = 0; i < tileset->tiles.size(); ++i) {  // parents stand before children
-    const TilesetTile& tile = tileset->tiles[i];
+  std::vector<GroupId> group_of(tileset.tiles.size(), none);
+  for (std::uint32_t i = 0; i < tileset.tiles.size(); ++i) {  // parents stand before children
+    const TilesetTile& tile = tileset.tiles[i];
     if (tile.uri.empty()) {
-      return Error{ErrorCode::Unsupported, "a tile without content cannot be shown", tileset_json.string()};
+      return Error{ErrorCode::Unsupported, "a tile without content cannot be shown", name};
     }
     const Sphere sphere{tile.bounds.center(), 0.5 * tile.bounds.diagonal_m()};
     if (!tile.children.empty()) {
@@ -60,16 +84,10 @@ Result<std::shared_ptr<const TilePyramid>> TilePyramid::open(const std::filesyst
         {.bounds = sphere, .group = tile.parent == none ? none : group_of[tile.parent], .maker = group_of[i]});
   }
   auto assembled = assemble_graph(groups, nodes);
-  if (!assembled) return Error{assembled.error().code, assembled.error().message, tileset_json.string()};
-  std::shared_ptr<TilePyramid> out{new TilePyramid};
-  out->content_ = std::make_unique<Content>(
-      Content{std::move(*tileset), std::move(assembled->graph), std::move(assembled->node_draft), nullptr});
-  if (cache) {
-    auto opened = TileCache::open(*cache, source_of(tileset_json, *text));
-    if (!opened) return opened.error();
-    out->content_->cache = std::move(*opened);
-  }
-  return std::shared_ptr<const TilePyramid>{std::move(out)};
+  if (!assembled) return Error{assembled.error().code, assembled.error().message, name};
+  graph = std::move(assembled->graph);
+  tile_of_node = std::move(assembled->node_draft);
+  return Done{};
 }
 
 const LodGraph& TilePyramid::graph() const noexcept { return content_->graph; }
@@ -84,15 +102,10 @@ TileCacheStatus TilePyramid::cache_status() const {
 }
 
 Result<Mesh> TilePyramid::load(NodeId tile, LoadTextures textures) const {
+  if (content_->osgb) return content_->osgb->tile(name(tile), textures);
   auto loaded = read_tile(content_->tileset, content_->tile_of_node[tile], textures, content_->cache.get());
   if (!loaded) return loaded.error();
   return std::move(loaded->mesh);
-}
-
-Error is_for_openscenegraph(const std::filesystem::path& file) {
-  return {ErrorCode::Unsupported,
-          "tiles of OpenSceneGraph are shown by its own viewers (osgviewer); make 3D Tiles to look at them here",
-          file.string()};
 }
 
 Mesh merged(std::span<const Mesh* const> tiles) {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Trees of OpenSceneGraph files, read by lodestone-osgb in a process of its own.
+#include <cstdlib>
+#include <fstream>
+
+#include <lodestone/metrics.h>
+#include <lodestone/tile_loader.h>
+#include <lodestone/tileset_writer.h>
+#include <catch2/catch.hpp>
+
+#include "data.h"
+#include "fixture.h"
+#include "formats/src/osgb/switching.h"
+#include "viewer/headless/headless.h"
+
+namespace lodestone::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One pyramid in both forms: "tileset.json" and "osgb/main.osgb". Tests that damage it take a copy.
+const fs::path& both() {
+  static const fs::path folder = [] {
+    const fs::path helper{LODESTONE_OSGB};
+    REQUIRE(::setenv("PATH", (helper.parent_path().string() + ":" + std::getenv("PATH")).c_str(), 1) == 0);
+    fs::path made = scratch_folder("osgb_tiles");
+    REQUIRE(write_outcrop(small_cliff(), made, {.pyramid = small_tiles()}));
+    const std::string command = "'" + helper.string() + "' '" + (made / "tileset.json").string() + "' '" +
+                                (made / "osgb").string() + "' >/dev/null 2>&1";
+    REQUIRE(std::system(command.c_str()) == 0);
+    return made;
+  }();
+  return folder;
+}
+
+View from_south(const TilePyramid& pyramid, double radii) {
+  View view;
+  view.eye = pyramid.bounds().center() - glm::dvec3{0.0, 0.5 * radii * pyramid.bounds().diagonal_m(), 0.0};
+  return view;
+}
+
+std::uint64_t triangles(const TilePager& pager, std::span<const NodeId> drawn) {
+  std::uint64_t sum = 0;
+  for (const NodeId tile : drawn) sum += pager.content(tile)->triangle_count();
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("A pyramid of OpenSceneGraph files looks like the same one as 3D Tiles, at every distance") {
+  const auto plain = TilePyramid::open(both() / "tileset.json");
+  const auto osgb = TilePyramid::open(both() / "osgb/main.osgb");
+  REQUIRE(plain);
+  if (!osgb) FAIL(to_line(osgb.error()));
+  CHECK((*osgb)->graph().nodes.size() == (*plain)->graph().nodes.size());
+  CHECK((*osgb)->origin() == (*plain)->origin());
+  CHECK(validate((*osgb)->graph()).ok());
+  render::RenderOptions options{.width_px = 200, .height_px = 150, .supersample = 1};
+  options.camera.target_m = (*plain)->origin() + (*plain)->bounds().center();
+  for (const double radii : {8.0, 1.0}) {
+    options.camera.eye_m = (*plain)->origin() + from_south(**plain, radii).eye;
+    const auto expected = render::render_tiles(*plain, options);
+    const auto picture = render::render_tiles(*osgb, options);
+    REQUIRE(expected);
+    if (!picture) FAIL(to_line(picture.error()));
+    CHECK(image_rms(expected->image, picture->image) < 1.5);
+    CHECK(double(picture->tiles) == Approx(expected->tiles).epsilon(0.3));  // boxes are tighter here
+  }
+}
+
+TEST_CASE(
+    "Of OpenSceneGraph's files only those are loaded that the camera needs, and all triangles are in the finest") {
+  const auto pyramid = TilePyramid::open(both() / "osgb/main.osgb");
+  const auto plain = TilePyramid::open(both() / "tileset.json");
+  REQUIRE(pyramid);
+  REQUIRE(plain);
+  TilePager pager{*pyramid};
+  CHECK(pager.settle(from_south(**pyramid, 1e4)).size() == 1);
+  CHECK(pager.status().loaded_tiles == 1);
+  pager.set_error_px(1e-6);
+  // Two workers, so two processes; frames go on meanwhile with what is there.
+  const View near = from_south(**pyramid, 4.0);
+  CHECK(!pager.update(near, 0.01).empty());
+  TilePager other{*plain, {.error_px = 1e-6}};
+  CHECK(triangles(pager, pager.settle(near)) == triangles(other, other.settle(near)));
+  CHECK(pager.status().failures.empty());
+}
+
+TEST_CASE("Files of OpenSceneGraph that are missing or damaged are told, and what is coarser stands in") {
+  const fs::path folder = scratch_folder("osgb_broken");
+  fs::copy(both() / "osgb", folder, fs::copy_options::recursive);
+  CHECK(is_tileset_file(folder / "main.osgb"));
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator{folder / "Data"}) {
+    if (entry.path().filename().string().starts_with("L1_")) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  REQUIRE(files.size() > 2);
+  const auto whole = TilePyramid::open(folder / "main.osgb");
+  REQUIRE(whole);
+  fs::remove(files[0]);  // after its tiles were listed
+  fs::resize_file(files[1], fs::file_size(files[1]) / 2);
+  TilePager late{*whole, {.error_px = 1e-6}};
+  CHECK(!late.settle(from_south(**whole, 4.0)).empty());
+  CHECK(late.status().failures.size() >= 2);
+
+  const auto broken = TilePyramid::open(folder / "main.osgb");
+  REQUIRE(broken);
+  TilePager pager{*broken, {.error_px = 1e-6}};
+  for (const NodeId tile : pager.settle(from_south(**broken, 4.0))) CHECK(pager.content(tile) != nullptr);
+  CHECK(pager.status().failures.size() == 2);
+
+  std::ofstream{folder / "main.osgb", std::ios::binary} << "no scene";
+  const auto none_such = TilePyramid::open(folder / "main.osgb");
+  REQUIRE(!none_such);
+  CHECK(none_such.error().code == ErrorCode::BadData);
+  CHECK(TilePyramid::open(folder / "nothing.osgb").error().code == ErrorCode::NotFound);
+}
+
+TEST_CASE("OpenSceneGraph's ranges give back the errors that they were made from") {
+  for (const double radius_m : {0.5, 20.0, 3000.0}) {
+    for (const double error_m : {1e-3, 0.05, 2.0}) {
+      const double px = double(osgb::threshold_px(radius_m, error_m));
+      CHECK(osgb::error_at_size_m(radius_m, px) == Approx(error_m).margin(1e-9 * radius_m));
+      CHECK(osgb::error_at_distance_m(radius_m, radius_m + error_m * osgb::focal_px()) == Approx(error_m));
+    }
+  }
+}
+
+}  // namespace lodestone::test
