@@ -167,6 +167,7 @@ class OutcropPyramid {
   [[nodiscard]] std::vector<bool> coverage(std::uint32_t segment) const;
 
  private:
+  friend class LevelMeasurer;
   friend class OutcropBuilder;
   friend class SkirtMaker;
   friend class TileDraft;

@@ -5,6 +5,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -21,6 +22,19 @@ namespace lodestone {
   return context.max_workers == 0 ? cores : static_cast<int>(context.max_workers);
 }
 
+// Calls work() where parallel loops may use so many threads. Those inside of it that are told 0 workers stay there.
+template <class Work>
+void with_workers(unsigned workers, Work work) {
+  if (workers == 0) return work();
+  // More threads than cores need a licence, or the scheduler complains on stderr.
+  std::optional<tbb::global_control> licence;
+  if (static_cast<int>(workers) > tbb::this_task_arena::max_concurrency()) {
+    licence.emplace(tbb::global_control::max_allowed_parallelism, std::size_t{workers});
+  }
+  tbb::task_arena arena{static_cast<int>(workers)};
+  arena.execute(work);
+}
+
 // Calls work(begin, end) for consecutive chunks of [0, count), each of `chunk` elements but the last. Chunks do not
 // depend on the number of threads, so a reduction over their results in order gives the same bits always. Chunks not
 // yet begun are left out when the context is cancelled: ask context.cancelled() afterwards.
@@ -30,21 +44,30 @@ void parallel_chunks(std::size_t count, std::size_t chunk, const Context& contex
   const auto run = [&](std::size_t i) {
     if (!context.cancelled()) work(i * chunk, std::min(count, (i + 1) * chunk));
   };
-  const int workers = worker_count(context);
-  if (workers == 1 || chunks <= 1) {
+  if (worker_count(context) == 1 || chunks <= 1) {
     for (std::size_t i = 0; i < chunks; ++i) run(i);
     return;
   }
-  // More threads than cores need a licence, or the scheduler complains on stderr.
-  std::optional<tbb::global_control> licence;
-  if (workers > tbb::this_task_arena::max_concurrency()) {
-    licence.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
-  }
-  tbb::task_arena arena{workers};
-  arena.execute([&] {
+  with_workers(context.max_workers, [&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>{0, chunks, 1}, [&](const tbb::blocked_range<std::size_t>& range) {
       for (std::size_t i = range.begin(); i != range.end(); ++i) run(i);
     });
+  });
+}
+
+// Calls first(context) and second(context), at the same time where there are workers for it; each gets the context that
+// shares them. Threads that wait inside `first`, the longer one, do not turn to the other.
+template <class First, class Second>
+void parallel_both(const Context& context, First first, Second second) {
+  if (worker_count(context) == 1) {
+    first(context);
+    second(context);
+    return;
+  }
+  Context shared = context;
+  shared.max_workers = 0;
+  with_workers(context.max_workers, [&] {
+    tbb::parallel_invoke([&] { tbb::this_task_arena::isolate([&] { first(shared); }); }, [&] { second(shared); });
   });
 }
 

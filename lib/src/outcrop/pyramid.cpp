@@ -12,12 +12,12 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
-#include "mesh/weld.h"
-#include "outcrop/borders.h"
+#include "base/parallel.h"
 #include "outcrop/cells.h"
-#include "outcrop/deviation.h"
+#include "outcrop/measure.h"
 #include "outcrop/tree.h"
 
 namespace lodestone {
@@ -71,16 +71,15 @@ class OutcropBuilder {
   void name_faces();
   void mark_tiles();
   [[nodiscard]] double choose_ratio() const;
-  [[nodiscard]] Status simplify_once();
+  [[nodiscard]] bool ratio_is_known() const;
+  [[nodiscard]] Status simplify_once(const Context& context);
+  [[nodiscard]] Status go_up();
   void add_level(double texture_scale);
   void place_faces();
-  void find_source_borders();
-  [[nodiscard]] std::vector<std::uint32_t> tile_of_faces() const;
-  void keep_borders(const Weld& weld, const outcrop::Borders& borders);
-  void measure_level();
   void describe_tile(std::uint32_t local);
   void weigh_cells();
   void link_children();
+  void settle_errors();
   void widen_skirts();
   [[nodiscard]] double bytes_of_front() const;
   [[nodiscard]] Status climb();
@@ -98,6 +97,8 @@ class OutcropBuilder {
   outcrop::Segmentation segmentation_;
   outcrop::ByteModel bytes_;
   outcrop::CellTree tree_;
+  std::optional<outcrop::Front> front_;
+  bool stuck_ = false;  // levels do not become smaller
   std::vector<FaceName> names_;
   std::vector<double> leaf_texture_bytes_;  // per cell, at full size
   outcrop::CellBytes cell_bytes_;
@@ -107,13 +108,8 @@ class OutcropBuilder {
   double texel_m_ = 0.0;                       // mean over textured faces
   double ratio_ = 0.4;                         // of triangles, of the last step
 
-  Weld source_weld_;
-  std::vector<std::uint32_t> leaf_of_source_face_;
-  std::vector<outcrop::BorderEdge> source_borders_;  // between leaves
-  std::unique_ptr<outcrop::Deviation> deviation_;
-  std::vector<outcrop::TileDeviation> deviations_;  // per tile of the newest level
-  std::vector<double> borders_below_m_;             // per tile of the newest level: of the chains of finer levels
-  double middle_deviation_m_ = 0.0;                 // of the newest level's tiles
+  LevelMeasurer measurer_{*out_};
+  std::vector<double> borders_below_m_;  // per tile of the newest level: of the chains of finer levels
 };
 
 // Weights of the data, and V_t.
@@ -191,25 +187,30 @@ void OutcropBuilder::mark_tiles() {
   }
 }
 
+// Before the newest level is measured.
+bool OutcropBuilder::ratio_is_known() const {
+  return options_.ratio > 0.0 || texel_m_ == 0.0 || out_->levels_.size() == 1;
+}
+
 // Of the next step. Without a wish it keeps the deviation of the middle tile at the size of a texel: what went too far
 // or not far enough in the step before is made up for in the next.
 double OutcropBuilder::choose_ratio() const {
   if (options_.ratio > 0.0) return options_.ratio;
-  if (texel_m_ == 0.0 || out_->levels_.size() == 1) return ratio_;
+  if (ratio_is_known()) return ratio_;
   constexpr double least_ratio = 0.2;
   constexpr double most_ratio = 0.7;
   const double texel_m = texel_m_ / out_->levels_.back().texture_scale;
-  const double room = texel_m / std::max(middle_deviation_m_, 1e-6 * texel_m);
+  const double room = texel_m / std::max(measurer_.middle_deviation_m(), 1e-6 * texel_m);
   return std::clamp(ratio_ * std::sqrt(room), least_ratio, most_ratio);
 }
 
-Status OutcropBuilder::simplify_once() {
+Status OutcropBuilder::simplify_once(const Context& context) {
   mark_tiles();
   EdgeCollapseOptions collapse;
   collapse.target_triangles = std::max(1U, static_cast<std::uint32_t>(mesh_.triangle_count() * ratio_));
   collapse.uv_weight = 0.2;
   collapse.sharpness_power = 2.0;
-  auto simplified = simplify(mesh_, collapse, context_);
+  auto simplified = simplify(mesh_, collapse, context);
   if (!simplified) return simplified.error();
   mesh_ = std::move(simplified->mesh);
   return Done{};
@@ -228,100 +229,17 @@ void OutcropBuilder::place_faces() {
   out.face_materials.resize(count);
   const bool featured = !out_->surroundings_.features.empty();
   if (featured) out.face_features.resize(count);
-  if (out_->meshes_.size() == 1) leaf_of_source_face_.resize(count);
+  std::vector<std::uint32_t> leaves(out_->meshes_.size() == 1 ? count : 0);
   for (FaceId f = 0; f < count; ++f) {
     const std::uint32_t to = at[tile_of(f)]++;
     const FaceName& name = names_[mesh_.face_features[f]];
     for (std::size_t k = 0; k < 3; ++k) out.indices[3 * std::size_t{to} + k] = mesh_.indices[3 * std::size_t{f} + k];
     out.face_materials[to] = name.material;
     if (featured) out.face_features[to] = name.feature;
-    if (out_->meshes_.size() == 1) leaf_of_source_face_[to] = name.leaf;
+    if (!leaves.empty()) leaves[to] = name.leaf;
   }
+  if (!leaves.empty()) measurer_.take_leaves(std::move(leaves));
   out.vertices = mesh_.vertices;
-}
-
-void OutcropBuilder::find_source_borders() {
-  const OutcropPyramid::LevelMesh& source = out_->meshes_.front();
-  source_weld_ = weld_by_position(source.vertices.positions);
-  outcrop::Borders borders = outcrop::find_borders(source.indices, source_weld_, leaf_of_source_face_);
-  source_borders_ = std::move(borders.edges);
-  deviation_ = std::make_unique<outcrop::Deviation>(source.vertices.positions, source.indices);
-}
-
-// Per face of the newest level.
-std::vector<std::uint32_t> OutcropBuilder::tile_of_faces() const {
-  const OutcropPyramid::LevelMesh& level = out_->meshes_.back();
-  std::vector<std::uint32_t> result;
-  result.reserve(level.face_materials.size());
-  for (std::uint32_t i = 0; i < tile_count(); ++i) {
-    result.insert(result.end(), level.first_face[i + 1] - level.first_face[i], i);
-  }
-  return result;
-}
-
-// What skirts will need of the newest level.
-void OutcropBuilder::keep_borders(const Weld& weld, const outcrop::Borders& borders) {
-  OutcropPyramid::LevelMesh& level = out_->meshes_.back();
-  level.face_borders = outcrop::border_bits(level.indices, weld, borders.edges);
-  std::vector<std::uint32_t> place(weld.point_count(), none);
-  for (const outcrop::BorderEdge& edge : borders.edges) {
-    for (const std::uint32_t point : {edge.a, edge.b}) {
-      if (place[point] != none) continue;
-      place[point] = static_cast<std::uint32_t>(level.border_points.size());
-      level.border_points.push_back({.position = level.vertices.positions[weld.first_vertex[point]]});
-    }
-  }
-  for (const std::uint32_t point : borders.open_points) {
-    if (place[point] != none) level.border_points[place[point]].on_rim = true;
-  }
-  for (std::size_t c = 0; c < level.indices.size(); ++c) {
-    const std::uint32_t at = place[weld.point_of[level.indices[c]]];
-    if (at == none) continue;
-    const VertexId* v = &level.indices[c - c % 3];
-    const auto& p = level.vertices.positions;
-    const glm::vec3 area = glm::cross(p[v[1]] - p[v[0]], p[v[2]] - p[v[0]]);
-    const float size = glm::length(area);
-    if (size > 0.0F) level.border_points[at].normal += area / size;
-  }
-  std::sort(level.border_points.begin(), level.border_points.end(),
-            [](const auto& a, const auto& b) { return outcrop::is_before(a.position, b.position); });
-}
-
-// Borders of the newest level, and how far it is from the source.
-void OutcropBuilder::measure_level() {
-  const OutcropPyramid::LevelMesh& source = out_->meshes_.front();
-  const OutcropPyramid::LevelMesh& level = out_->meshes_.back();
-  OutcropLevel& info = out_->levels_.back();
-  const std::vector<std::uint32_t> tile_of_face = tile_of_faces();
-  const Weld weld = weld_by_position(level.vertices.positions);
-  const outcrop::Borders borders = outcrop::find_borders(level.indices, weld, tile_of_face);
-  info.open_edges = borders.open_edges;
-  std::vector<std::uint8_t> on_border(weld.point_count(), 0);
-  for (const outcrop::BorderEdge& edge : borders.edges) on_border[edge.a] = on_border[edge.b] = 1;
-  for (std::size_t c = 0; c < level.indices.size(); c += 3) {
-    const auto touches = [&](std::size_t k) { return on_border[weld.point_of[level.indices[c + k]]] != 0; };
-    if (touches(0) || touches(1) || touches(2)) ++info.border_triangles;
-  }
-  keep_borders(weld, borders);
-  deviations_.assign(tile_count(), {});
-  if (out_->meshes_.size() == 1) return;
-  std::vector<std::uint32_t> of_source;
-  of_source.reserve(leaf_of_source_face_.size());
-  for (const std::uint32_t leaf : leaf_of_source_face_) of_source.push_back(tile_of_cell_[leaf]);
-  std::vector<outcrop::BorderEdge> source_borders;
-  for (const outcrop::BorderEdge& edge : source_borders_) {
-    const std::uint32_t left = tile_of_cell_[edge.left];
-    const std::uint32_t right = tile_of_cell_[edge.right];
-    if (left != right) source_borders.push_back({edge.a, edge.b, left, right});
-  }
-  deviations_ = deviation_->measure(
-      {source.vertices.positions, source.indices, of_source, source_weld_, source_borders},
-      {level.vertices.positions, level.indices, tile_of_face, weld, borders.edges}, tile_count(), context_);
-  std::vector<double> sorted;
-  for (const outcrop::TileDeviation& one : deviations_) sorted.push_back(one.surface_m);
-  info.geometric_error_m = *std::max_element(sorted.begin(), sorted.end());
-  std::nth_element(sorted.begin(), sorted.begin() + tile_count() / 2, sorted.end());
-  middle_deviation_m_ = sorted[tile_count() / 2];
 }
 
 // Box, segments, texel size of a tile of the newest level.
@@ -351,35 +269,43 @@ void OutcropBuilder::describe_tile(std::uint32_t local) {
     if (used[s] != 0) tile.segments.push_back(s);
   }
   tile.texel_m = area_px > 0.0 ? std::sqrt(area_m2 / area_px) : 0.0;
-  tile.error_m = tile.level == 0 ? 0.0 : std::max(deviations_[local].surface_m, tile.texel_m);
 }
 
-// Ties the newest level to the one below it: boxes enclose, errors grow. Beside a neighbour of any finer level a border
-// gapes by no more than both chains together deviate from the source's.
+// Ties the newest level to the one below it: boxes enclose.
 void OutcropBuilder::link_children() {
-  std::vector<double> below_m(tile_count(), 0.0);
+  if (out_->first_tile_.size() == 1) return;
   const std::uint32_t here = out_->first_tile_.back();
-  if (out_->first_tile_.size() > 1) {
-    const std::uint32_t below = out_->first_tile_[out_->first_tile_.size() - 2];
-    for (std::uint32_t i = 0; i < cells_below_.size(); ++i) {
-      const std::uint32_t local = tile_of_cell_[cells_below_[i]];
-      OutcropTile& child = out_->tiles_[below + i];
-      child.parent = here + local;
-      OutcropTile& tile = out_->tiles_[here + local];
-      tile.children.push_back(below + i);
-      tile.bounds.add(child.bounds.min);
-      tile.bounds.add(child.bounds.max);
-      tile.error_m = std::max(tile.error_m, child.error_m * error_step);
-      below_m[local] = std::max(below_m[local], borders_below_m_[i]);
+  const std::uint32_t below = out_->first_tile_[out_->first_tile_.size() - 2];
+  for (std::uint32_t i = 0; i < cells_below_.size(); ++i) {
+    OutcropTile& child = out_->tiles_[below + i];
+    child.parent = here + tile_of_cell_[cells_below_[i]];
+    OutcropTile& tile = out_->tiles_[child.parent];
+    tile.children.push_back(below + i);
+    tile.bounds.add(child.bounds.min);
+    tile.bounds.add(child.bounds.max);
+  }
+}
+
+// Of the newest level once it is measured: errors grow upwards. Beside a neighbour of any finer level a border gapes by
+// no more than both chains together deviate from the source's.
+void OutcropBuilder::settle_errors() {
+  std::vector<double> borders_m;
+  const std::uint32_t here = out_->first_tile_.back();
+  const std::uint32_t below = here - static_cast<std::uint32_t>(borders_below_m_.size());
+  for (std::uint32_t i = here; i < out_->tiles_.size(); ++i) {
+    OutcropTile& tile = out_->tiles_[i];
+    const outcrop::TileDeviation& deviation = measurer_.deviations()[i - here];
+    double below_m = 0.0;
+    tile.error_m = tile.level == 0 ? 0.0 : std::max(deviation.surface_m, tile.texel_m);
+    for (const std::uint32_t child : tile.children) {
+      tile.error_m = std::max(tile.error_m, out_->tiles_[child].error_m * error_step);
+      below_m = std::max(below_m, borders_below_m_[child - below]);
     }
+    tile.gap_m = border_slack * (deviation.border_m + below_m);
+    if (tile.level > 0) tile.error_m = std::max(tile.error_m, tile.gap_m);
+    borders_m.push_back(std::max(below_m, deviation.border_m));
   }
-  borders_below_m_.clear();
-  for (std::uint32_t i = 0; i < tile_count(); ++i) {
-    double& error_m = out_->tiles_[here + i].error_m;
-    if (out_->levels_.size() > 1) error_m = std::max(error_m, border_slack * (deviations_[i].border_m + below_m[i]));
-    borders_below_m_.push_back(std::max(below_m[i], deviations_[i].border_m));
-    out_->tiles_[here + i].gap_m = border_slack * (deviations_[i].border_m + below_m[i]);
-  }
+  borders_below_m_ = std::move(borders_m);
 }
 
 // A tile may meet neighbours that are coarser than itself: its skirt is deep enough for those up to two levels up.
@@ -416,8 +342,6 @@ void OutcropBuilder::weigh_cells() {
 void OutcropBuilder::add_level(double texture_scale) {
   out_->levels_.push_back({.tiles = tile_count(), .triangles = mesh_.triangle_count(), .texture_scale = texture_scale});
   place_faces();
-  if (out_->meshes_.size() == 1) find_source_borders();
-  measure_level();
   out_->first_tile_.push_back(static_cast<std::uint32_t>(out_->tiles_.size()));
   out_->tiles_.resize(out_->tiles_.size() + tile_count());
   for (std::uint32_t i = 0; i < tile_count(); ++i) {
@@ -433,32 +357,50 @@ double OutcropBuilder::bytes_of_front() const {
          std::accumulate(cell_bytes_.texture.begin(), cell_bytes_.texture.end(), 0.0);
 }
 
+// Makes the next level, and meanwhile measures the newest one.
+Status OutcropBuilder::go_up() {
+  const std::vector<std::uint32_t> tile_of_cell = std::move(tile_of_cell_);
+  const auto measure = [&](const Context& context) { measurer_.measure(tile_of_cell, context); };
+  const bool first_measure = !ratio_is_known();
+  if (first_measure) measure(context_);
+  ratio_ = choose_ratio();
+  const auto enough = static_cast<double>(out_->tile_bytes_);
+  front_->merge(cell_bytes_, ratio_, texture_ratio() * texture_ratio(), enough, stuck_);
+  cells_below_ = std::move(cells_of_level_);
+  cells_of_level_ = front_->cells();
+  tile_of_cell_ = front_->cover();
+  if (first_measure) {
+    settle_errors();
+    return simplify_once(context_);
+  }
+  Status status = Done{};
+  parallel_both(
+      context_, [&](const Context& context) { status = simplify_once(context); }, measure);
+  settle_errors();
+  return status;
+}
+
 // Level after level until one small tile is left.
 Status OutcropBuilder::climb() {
   const Error cancelled{ErrorCode::Cancelled, "building the pyramid was cancelled", ""};
-  outcrop::Front front{tree_};
-  cells_of_level_ = front.cells();
-  tile_of_cell_ = front.cover();
+  front_.emplace(tree_);
+  cells_of_level_ = front_->cells();
+  tile_of_cell_ = front_->cover();
   double scale = 1.0;
   add_level(scale);
-  const auto enough = static_cast<double>(out_->tile_bytes_);
-  bool stuck = false;
-  while (tile_count() > 1 || (bytes_of_front() > enough && !stuck)) {
+  while (tile_count() > 1 || (bytes_of_front() > static_cast<double>(out_->tile_bytes_) && !stuck_)) {
+    if (out_->levels_.size() >= most_levels) break;
     if (context_.cancelled()) return cancelled;
-    ratio_ = choose_ratio();
-    stuck = stuck || out_->levels_.size() + 2 >= most_levels;
-    front.merge(cell_bytes_, ratio_, texture_ratio() * texture_ratio(), enough, stuck);
-    cells_below_ = std::move(cells_of_level_);
-    cells_of_level_ = front.cells();
-    tile_of_cell_ = front.cover();
+    stuck_ = stuck_ || out_->levels_.size() + 2 >= most_levels;
     const std::uint32_t before = mesh_.triangle_count();
-    if (Status status = simplify_once(); !status) return status;
-    stuck = mesh_.triangle_count() >= before && texel_m_ == 0.0;  // no better level will come: merge what there is
+    if (Status status = go_up(); !status) return status;
+    stuck_ = mesh_.triangle_count() >= before && texel_m_ == 0.0;  // no better level will come: merge what there is
     scale *= texture_ratio();
     add_level(scale);
     context_.report("levels", 1.0 - 1.0 / static_cast<double>(out_->levels_.size()));
-    if (out_->levels_.size() >= most_levels) break;
   }
+  measurer_.measure(tile_of_cell_, context_);
+  settle_errors();
   if (context_.cancelled()) return cancelled;
   widen_skirts();
   return Done{};
