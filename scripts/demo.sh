@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Shows what Lodestone does, from an empty machine on: installs what is missing, builds, makes a detailed house and an
-# outcrop, turns them into progressive models, draws eight levels and an animated sweep of each into out/demo, and opens
-# the window where there is a display.
+# outcrop, turns them into progressive models, draws eight levels and an animated sweep of each, and opens the window where
+# there is a display.
 #
 #   scripts/demo.sh [--no-window]
 #
-# HOUSE_TRIANGLES and OUTCROP_TRIANGLES set the size of the two models.
+# HOUSE_TRIANGLES and OUTCROP_TRIANGLES set the size of the two models, SWEEP_FRAMES the length of the sweeps, DEMO_FOLDER
+# (out/demo) where all goes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 window=yes
 case "${1:-}" in
   "") ;;
   --no-window) window=no ;;
-  *) sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 1 ;;
+  *) sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 1 ;;
 esac
 
 step() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
@@ -29,8 +30,8 @@ cmake --preset release | tail -n 1
 cmake --build --preset release --target lodestone_program lodestone-view | tail -n 1
 lodestone=$PWD/build/release/cli/lodestone
 
-mkdir -p out/demo
-cd out/demo
+mkdir -p "${DEMO_FOLDER:=out/demo}"
+cd "$DEMO_FOLDER"
 
 make() {  # make NAME KIND OPTIONS...: generate, build, verify, sheet, sweep
   local name=$1 kind=$2
@@ -45,8 +46,8 @@ make() {  # make NAME KIND OPTIONS...: generate, build, verify, sheet, sweep
   "$lodestone" play "$name.lode"
   step "$name: eight levels and a sweep"
   "$lodestone" render "$name.lode" --sheet 8 --size 480x360 -o "${name}_levels.png"
-  "$lodestone" sweep "$name.lode" --frames 160 --from 1 --to 0.01 --and-back --morph-seconds 0.5 --size 480x360 \
-    --video "${name}_sweep.gif"
+  "$lodestone" sweep "$name.lode" --frames "${SWEEP_FRAMES:-160}" --from 1 --to 0.01 --and-back --morph-seconds 0.5 \
+    --size 480x360 --video "${name}_sweep.gif"
 }
 
 make house house --roof hip --triangles "${HOUSE_TRIANGLES:-120000}"
@@ -59,5 +60,5 @@ if [ $window = yes ] && [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
   echo "Opening the window; drag the slider, close it to end."
   "$lodestone" view house.lode
 else
-  echo "No window opened; with a display: build/release/cli/lodestone view out/demo/house.lode"
+  echo "No window opened; with a display: $lodestone view $PWD/house.lode"
 fi

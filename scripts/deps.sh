@@ -7,7 +7,8 @@
 #   scripts/deps.sh --list             prints the packages of the groups asked for
 #   scripts/deps.sh [...] GROUP...     only these groups: build viewer test bench clients
 #
-# Written for Debian 12. Ubuntu 22.04 and 24.04 use the same names except where a line names two, old|new.
+# Written for Debian 12. A line may name two, one|other, for systems that name a package otherwise. What apt does not know
+# and only tests, clients or peers need is left out: these skip themselves (Ubuntu has no package of Chromium).
 set -euo pipefail
 
 packages_of() {
@@ -36,6 +37,7 @@ for word in "$@"; do
 done
 [ ${#groups[@]} -gt 0 ] || groups=(build viewer test clients)
 
+must="$(packages_of build) $(packages_of viewer)"
 wanted=()
 for group in "${groups[@]}"; do
   names=$(packages_of "$group")
@@ -74,20 +76,23 @@ fi
 echo "deps: installing ${missing[*]}"
 "${as_root[@]}" apt-get update -qq
 chosen=()
+left_out=()
 for name in "${missing[@]}"; do
-  pick=${name%%|*}
+  pick=
   for one in ${name//|/ }; do
-    if apt-cache show "$one" >/dev/null 2>&1; then pick=$one; break; fi
+    if [ -z "$pick" ] && apt-cache show "$one" >/dev/null 2>&1; then pick=$one; fi
   done
-  chosen+=("$pick")
+  if [ -n "$pick" ]; then
+    chosen+=("$pick")
+  elif [[ " $must " == *" $name "* ]]; then
+    echo "lodestone: deps.sh: apt knows no package $name, without which nothing is built" >&2
+    exit 1
+  else
+    left_out+=("$name")
+  fi
 done
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
-
-# Ubuntu 22.04 has an older CMake than the project needs.
-version=$(cmake --version | sed -n '1s/[^0-9]*//p')
-if [ "$(printf '%s\n3.25\n' "$version" | sort -V | head -n 1)" != 3.25 ]; then
-  echo "deps: CMake $version is too old, installing a newer one with pip"
-  "${as_root[@]}" apt-get install -y -qq --no-install-recommends python3-pip >/dev/null
-  "${as_root[@]}" python3 -m pip install --quiet 'cmake>=3.25,<4'
+if [ ${#chosen[@]} -gt 0 ]; then
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
 fi
+if [ ${#left_out[@]} -gt 0 ]; then echo "deps: not packaged here, left out: ${left_out[*]}"; fi
 echo "deps: done"
