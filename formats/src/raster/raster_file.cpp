@@ -77,6 +77,7 @@ Dataset reproject(GDALDataset& dataset, const std::optional<double>& nodata) {
                                  "-et", "0",   "-ot",    "Float32", "-dstnodata", "nan"};
   if (nodata) words.insert(words.end(), {"-srcnodata", std::to_string(*nodata)});
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.data(), nullptr);
