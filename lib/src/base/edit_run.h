@@ -25,7 +25,8 @@ struct RecordEnds {
   std::uint32_t faces = 0, vertices = 0, corners = 0, moves = 0;
 };
 
-// Many records at once: their parts one after the other, and where each record's end, counted from `base`.
+// Many records at once: their parts one after the other, and where each record's end, counted from `base`. Runs of one
+// pass but different lanes are about different faces and vertices.
 struct EditRun {
   std::span<const FaceId> faces;
   std::span<const RemovedVertex> vertices;
@@ -34,6 +35,8 @@ struct EditRun {
   std::span<const std::uint32_t> values;
   std::span<const RecordEnds> records;
   RecordEnds base;
+  std::uint32_t pass = 0;
+  std::uint32_t lane = 0;
 };
 
 }  // namespace lodestone

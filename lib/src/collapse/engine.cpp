@@ -92,6 +92,7 @@ class Engine {
   std::array<std::uint32_t, refusal_count> last_refusals_{};  // of the last pass
   std::uint32_t faces_left_;
   std::uint32_t pass_ = 0;
+  std::uint32_t log_count_ = 0;  // passes and searches for parts
   double diagonal_m_ = 0.0;
   double line_weight_ = line_weight;
   double error_m_ = 0.0;      // largest so far
@@ -99,6 +100,7 @@ class Engine {
   bool loose_ = false;
   bool last_resort_ = false;
   bool looks_matter_ = false;
+  bool parts_missing_ = false;
 };
 
 // Equal parts of the points; every other pass they lie half a part further on, so that no edge stays between two.
@@ -111,10 +113,13 @@ void Engine::cut_regions() {
   for (std::uint64_t i = 1; i < count; ++i) cuts.push_back(static_cast<std::uint32_t>(points * i / count + shift));
   cuts.push_back(points);
   regions_.resize(cuts.size() - 1);
+  ++log_count_;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     Region& region = regions_[i];
     region.points = {cuts[i], cuts[i + 1]};
     region.log.clear();
+    region.sorted.pass = log_count_;
+    region.sorted.lane = static_cast<std::uint32_t>(i);
     region.refusals = {};
   }
 }
@@ -122,7 +127,10 @@ void Engine::cut_regions() {
 void Engine::sum_all() {
   quadrics_.resize(mesh_.point_count());
   if (options_.sharpness_power > 0.0) mesh_.sharpness.assign(mesh_.point_count(), 1.0F);
-  for_each_region([&](Region& region) {
+  const std::size_t others = std::exchange(parts_missing_, false) ? 1 : 0;  // beside the regions
+  parallel_for_each(others + regions_.size(), 1, context_, [&](std::size_t i) {
+    if (i < others) return find_parts(mesh_);
+    Region& region = regions_[i - others];
     region.edges.clear();
     sum_quadrics(mesh_, {source_, options_, looks_matter_, line_weight_}, region.points, quadrics_, region.edges);
   });
@@ -264,6 +272,7 @@ bool Engine::relax() {
 bool Engine::prune(double limit_m) {
   if (done()) return false;
   PassLog log;
+  log.pass = ++log_count_;
   limit_m = std::min(limit_m, options_.max_error_m);
   pruned_to_m_ = limit_m;
   error_m_ = std::max(error_m_, double{prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, log)});
@@ -300,6 +309,7 @@ CollapseReport Engine::run() {
   loose_ = start_.scruples == Scruples::None;
   diagonal_m_ = bounds(source_).diagonal_m();
   looks_matter_ = options_.attributes == Attributes::All && (mesh_.has_seams() || !source_.face_materials.empty());
+  parts_missing_ = options_.prune_parts;
   drop_degenerate(start.degenerate);
   double share = first_share();
   const double total = static_cast<double>(source_.triangle_count());

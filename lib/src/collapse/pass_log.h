@@ -62,10 +62,15 @@ class PassLog {
             part(moved, from.moves, to.moves),
             part(values, from.moves * value_words_, to.moves * value_words_),
             {ends_.data() + begin, ends_.data() + end},
-            from};
+            from,
+            pass,
+            lane};
   }
   // Makes this the records of `from` in the given order.
   void assign(const PassLog& from, const std::vector<Keyed>& order);
+
+  std::uint32_t pass = 0;  // see EditRun
+  std::uint32_t lane = 0;
 
   // Filled by the maker of a record before end().
   std::vector<FaceId> faces;

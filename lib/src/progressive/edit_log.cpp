@@ -9,7 +9,10 @@
 
 namespace lodestone::progressive {
 
-void EditLog::begin(float error_m) { records_.push_back({error_m, 0, 0, 0, 0}); }
+void EditLog::begin(float error_m) {
+  assert(appended_.empty());
+  records_.push_back({error_m, 0, 0, 0, 0});
+}
 void EditLog::remove_face(FaceId face) { faces_.push_back(face); }
 void EditLog::remove_vertex(VertexId vertex, VertexId merges_into) { vertices_.push_back({vertex, merges_into}); }
 void EditLog::repoint(CornerId corner, VertexId to) { corners_.push_back({corner, to}); }
@@ -40,6 +43,26 @@ void EditLog::append(const EditRun& run) {
                         to.vertices + (r.vertices - run.base.vertices), to.corners + (r.corners - run.base.corners),
                         to.moves + (r.moves - run.base.moves)});
   }
+  if (run.records.empty()) return;
+  if (appended_.empty() || appended_.back().pass != run.pass || appended_.back().lane != run.lane) {
+    appended_.push_back({{appended_.empty() ? 0 : appended_.back().records.end, 0}, run.pass, run.lane});
+  }
+  appended_.back().records.end = record_count();
+}
+
+std::vector<EditLog::Stretch> EditLog::stretches() const {
+  constexpr std::uint32_t most_records = 16'384;
+  const std::vector<Stretch> all =
+      appended_.empty() ? std::vector<Stretch>{{.records = {0, record_count()}}} : appended_;
+  std::vector<Stretch> cut;
+  for (Stretch s : all) {
+    const std::uint32_t end = s.records.end;
+    for (; s.records.begin < end; s.records.begin = s.records.end) {
+      s.records.end = std::min(end, s.records.begin + most_records);
+      cut.push_back(s);
+    }
+  }
+  return cut;
 }
 
 void EditLog::reserve(std::size_t records, bool moving) {
@@ -64,6 +87,7 @@ bool EditLog::finite(const VertexArrays& arrays) const {
 
 void EditLog::join_from(std::uint32_t first) {
   if (first + 1 >= record_count()) return;
+  appended_.clear();
   const RecordEnds before = first == 0 ? RecordEnds{} : records_[first - 1];
   RecordEnds joined{};
   for (std::uint32_t i = first; i < record_count(); ++i) joined.error_m = std::max(joined.error_m, records_[i].error_m);

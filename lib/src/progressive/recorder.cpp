@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Based on: Hoppe 1996, Progressive Meshes (records of an edge collapse); Li et al. 2019, section 2.4 (fixed slots, one
 // stack for both directions).
-// Differs: slots are sorted by removal time, so a record need not say which vertex and faces it adds; what an edge
-// collapse implies (its target, the faces that go) is derived from the corners it re-points.
+// Differs: slots are sorted by removal time, so a record need not say which vertex and faces it adds.
 #include "progressive/recorder.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "base/parallel.h"
 #include "progressive/check.h"
+#include "progressive/encoder.h"
 #include "progressive/record.h"
 #include "progressive/values.h"
 
@@ -21,22 +22,6 @@ namespace lodestone::progressive {
 namespace {
 
 constexpr double error_step_ratio = 1.0019;
-
-// Sorts stably by `key`. Records are small, and std::stable_sort allocates each time.
-template <class T, class Key>
-void sort_by(std::vector<T>& array, Key key) {
-  constexpr std::size_t small = 32;
-  if (array.size() > small) {
-    std::stable_sort(array.begin(), array.end(), [&](const T& a, const T& b) { return key(a) < key(b); });
-    return;
-  }
-  for (std::size_t i = 1; i < array.size(); ++i) {
-    const T element = array[i];
-    std::size_t at = i;
-    for (; at > 0 && key(element) < key(array[at - 1]); --at) array[at] = array[at - 1];
-    array[at] = element;
-  }
-}
 
 // Runs of equal error, in ascending levels, from errors in coarsening order.
 std::vector<ErrorStep> error_steps(const std::vector<float>& errors) {
@@ -66,27 +51,20 @@ class Recorder {
       : source_(source),
         context_(context),
         log_(std::move(log)),
-        indices_(source.indices),
+        replayed_{source.indices, {}, std::vector<std::uint8_t>(source.triangle_count(), Replayed::in_use)},
         vertex_slot_(source.vertex_count(), none),
-        first_corner_(source.triangle_count(), none),
-        rotation_(source.triangle_count(), in_use) {
-    if (!log_.moved_.empty()) values_ = source.vertices;
+        first_corner_(source.triangle_count(), none) {
+    if (!log_.moved_.empty()) replayed_.values = source.vertices;
   }
 
   ModelData run(std::string method) {
     static_cast<Surroundings&>(data_) = source_;
     data_.method = std::move(method);
     assign_vertex_slots();
-    for (std::uint32_t i = 0; i < log_.record_count(); ++i) {
-      if (i + fetch_ahead < log_.record_count()) fetch(spans(i + fetch_ahead));
-      encode(i);
-    }
-    std::reverse(data_.shapes.begin(), data_.shapes.end());
-    std::reverse(fan_corners_.begin(), fan_corners_.end());
-    std::reverse(data_.edits.begin(), data_.edits.end());
-    std::reverse(data_.value_xor.begin(), data_.value_xor.end());
+    encode();
+    if (context_.cancelled()) return {};
     assign_face_slots();
-    translate_corners();
+    assemble();
     write_vertices();
     std::vector<float> errors;
     errors.reserve(log_.record_count());
@@ -96,24 +74,6 @@ class Recorder {
   }
 
  private:
-  // What one record holds, as ranges of the log's arrays.
-  struct Spans {
-    std::span<FaceId> faces;
-    std::span<RemovedVertex> vertices;
-    std::span<RepointedCorner> corners;
-    std::uint32_t first_move = 0, moves_end = 0;
-  };
-
-  [[nodiscard]] Spans spans(std::uint32_t i) {
-    const RecordEnds from = i == 0 ? RecordEnds{} : log_.records_[i - 1];
-    const RecordEnds& to = log_.records_[i];
-    return {{log_.faces_.begin() + from.faces, log_.faces_.begin() + to.faces},
-            {log_.vertices_.begin() + from.vertices, log_.vertices_.begin() + to.vertices},
-            {log_.corners_.begin() + from.corners, log_.corners_.begin() + to.corners},
-            from.moves,
-            to.moves};
-  }
-
   // Base vertices first in source order, then record by record in refining order, each after what it merges into.
   void assign_vertex_slots() {
     std::vector<std::uint8_t> removed(source_.vertex_count(), 0);
@@ -127,7 +87,7 @@ class Recorder {
     }
     data_.base_vertex_count = static_cast<std::uint32_t>(vertex_of_slot_.size());
     std::vector<std::uint32_t> place(source_.vertex_count(), none);  // of a vertex in its record
-    for (std::uint32_t i = log_.record_count(); i-- > 0;) order_removed(spans(i).vertices, place);
+    for (std::uint32_t i = log_.record_count(); i-- > 0;) order_removed(log_.spans(i).vertices, place);
   }
 
   void give_slot(VertexId vertex) {
@@ -167,208 +127,21 @@ class Recorder {
     for (const auto& r : removed) place[r.vertex] = none;
   }
 
-  // Brings near what encode() reads at random: most of its time is waiting for these. Inlined because a compiler may
-  // take a call that only fetches for one without effect.
-  [[gnu::always_inline]] void fetch(const Spans& record) const {
-    for (std::uint32_t m = record.first_move; m < record.moves_end; ++m) {
-      const VertexId v = log_.moved_[m];
-      __builtin_prefetch(&vertex_slot_[v]);
-      __builtin_prefetch(&values_.positions[v], 1);
-      if (!values_.normals.empty()) __builtin_prefetch(&values_.normals[v], 1);
-      if (!values_.uvs.empty()) __builtin_prefetch(&values_.uvs[v], 1);
-    }
-    for (const FaceId face : record.faces) {
-      __builtin_prefetch(&indices_[3 * static_cast<std::size_t>(face)]);
-      __builtin_prefetch(&rotation_[face], 1);
-    }
-    for (const auto& [corner, to] : record.corners) {
-      __builtin_prefetch(&indices_[corner], 1);
-      __builtin_prefetch(&rotation_[corner / 3]);
-    }
-  }
-
-  void encode(std::uint32_t i) {
-    const Spans record = spans(i);
-    for (const FaceId face : record.faces) {
-      assert(rotation_[face] == in_use);
-      rotation_[face] = 0;
-    }
-    gather_corners(record);
-    gather_moves(record);
-    if (RecordKind kind{}; fan(record, kind)) {
-      encode_fan(record, kind);
-    } else {
-      encode_edit(record);
-    }
-    for (const auto& [corner, to] : corners_) indices_[corner] = to;
-    for (const std::uint32_t m : moves_) set_value(pointers(values_), log_.moved_[m], move_words(m));
-  }
-
-  // Into corners_: what really changes on faces that stay, by corner, the last word on each corner.
-  void gather_corners(const Spans& record) {
-    corners_.clear();
-    for (const auto& repointed : record.corners) {
-      if (rotation_[repointed.corner / 3] == in_use) corners_.push_back(repointed);
-    }
-    sort_by(corners_, [](const auto& repointed) { return repointed.corner; });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      const bool last = i + 1 == corners_.size() || corners_[i + 1].corner != corners_[i].corner;
-      if (last && indices_[corners_[i].corner] != corners_[i].to) corners_[kept++] = corners_[i];
-    }
-    corners_.resize(kept);
-  }
-
-  // Into moves_: positions in the log's moves of vertices that stay and change, by slot, the last word on each.
-  void gather_moves(const Spans& record) {
-    const auto slot = [&](std::uint32_t m) { return vertex_slot_[log_.moved_[m]]; };
-    moves_.clear();
-    for (std::uint32_t m = record.first_move; m < record.moves_end; ++m) {
-      // Slots of the vertices removed here are one run.
-      const bool stays = record.vertices.empty() || slot(m) < vertex_slot_[record.vertices.front().vertex] ||
-                         slot(m) > vertex_slot_[record.vertices.back().vertex];
-      if (stays) moves_.push_back(m);
-    }
-    sort_by(moves_, slot);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < moves_.size(); ++i) {
-      const bool last = i + 1 == moves_.size() || slot(moves_[i + 1]) != slot(moves_[i]);
-      if (last && changes_value(moves_[i])) moves_[kept++] = moves_[i];
-    }
-    moves_.resize(kept);
-  }
-
-  [[nodiscard]] const std::uint32_t* move_words(std::uint32_t m) const {
-    return &log_.values_[static_cast<std::size_t>(m) * log_.value_words_];
-  }
-  [[nodiscard]] bool changes_value(std::uint32_t m) {
-    std::uint32_t old[max_value_words];
-    get_value(pointers(values_), log_.moved_[m], old);
-    return !std::equal(old, old + log_.value_words_, move_words(m));
-  }
-
-  // Whether the record is a fan; then its faces are ordered left, right and rotated, and corners_ is in ring order.
-  bool fan(const Spans& record, RecordKind& kind) {
-    if (record.vertices.size() != 1 || record.faces.empty() || record.faces.size() > 2) return false;
-    if (corners_.empty() || corners_.size() > RecordShape::corner_mask) return false;
-    const auto [s, v] = record.vertices[0];
-    if (s == v || moves_.size() > 1 || (moves_.size() == 1 && log_.moved_[moves_[0]] != v)) return false;
-    const MaterialId material = source_.face_material(record.faces[0]);
-    if (material > std::numeric_limits<std::uint16_t>::max()) return false;
-    for (const auto& [corner, to] : corners_) {
-      if (indices_[corner] != s || to != v) return false;
-    }
-    FaceId left = none;
-    FaceId right = none;
-    VertexId a = none;
-    VertexId b = none;
-    for (const FaceId face : record.faces) {
-      if (source_.face_material(face) != material || !rotate_to_front(face, s)) return false;
-      const VertexId x = indices_[3 * face + (rotation_[face] + 1) % 3];
-      const VertexId y = indices_[3 * face + (rotation_[face] + 2) % 3];
-      if (x == s || y == s || (x == v) == (y == v)) return false;
-      FaceId& side = x == v ? left : right;
-      if (side != none) return false;
-      side = face;
-      (x == v ? a : b) = x == v ? y : x;
-    }
-    kind = right == none ? RecordKind::FanLeft : left == none ? RecordKind::FanRight : RecordKind::FanBoth;
-    if (kind == RecordKind::FanBoth) {
-      record.faces[0] = left;
-      record.faces[1] = right;
-    }
-    return order_ring(a, b);
-  }
-
-  bool rotate_to_front(FaceId face, VertexId s) {
-    for (std::uint8_t i = 0; i < 3; ++i) {
-      rotation_[face] = i;
-      if (indices_[3 * face + i] == s) return true;
-    }
-    return false;
-  }
-
-  // Sorts corners_ so that the first is followed by `a`, the last preceded by `b` (either may be none), and the others
-  // follow each other around the ring as far as the surface is manifold there.
-  bool order_ring(VertexId a, VertexId b) {
-    const auto after = [&](const auto& c) { return indices_[next_corner(c.corner)]; };
-    const auto before = [&](const auto& c) { return indices_[previous_corner(c.corner)]; };
-    auto first = corners_.begin();
-    auto last = corners_.end();
-    if (a != none && b != none && corners_.size() > 1) {  // the far end, so that the chain from `a` cannot take it
-      const auto end = std::find_if(first, last, [&](const auto& c) { return before(c) == b; });
-      if (end == last) return false;
-      std::iter_swap(end, last - 1);
-      --last;
-    }
-    if (a != none) {
-      for (VertexId next = a; first != last; ++first) {
-        const auto found = std::find_if(first, last, [&](const auto& c) { return after(c) == next; });
-        if (found == last) break;
-        std::iter_swap(first, found);
-        next = before(*first);
+  // Pass after pass, but the lanes of one at once.
+  void encode() {
+    stretches_ = log_.stretches();
+    encoded_.resize(stretches_.size());
+    for (std::size_t begin = 0, end = 0; begin != stretches_.size(); begin = end) {
+      std::uint32_t lane_count = 0;
+      for (; end != stretches_.size() && stretches_[end].pass == stretches_[begin].pass; ++end) {
+        lane_count = std::max(lane_count, stretches_[end].lane + 1);
       }
-    } else {
-      for (VertexId next = b; first != last; --last) {
-        const auto found = std::find_if(first, last, [&](const auto& c) { return before(c) == next; });
-        if (found == last) break;
-        std::iter_swap(last - 1, found);
-        next = after(*(last - 1));
-      }
-    }
-    return (a == none || after(corners_.front()) == a) && (b == none || before(corners_.back()) == b);
-  }
-
-  void encode_fan(const Spans& record, RecordKind kind) {
-    auto shape = static_cast<unsigned>(corners_.size()) | static_cast<unsigned>(kind) << RecordShape::kind_shift;
-    if (!moves_.empty()) shape |= RecordShape::moves_flag;
-    data_.shapes.push_back(static_cast<std::uint8_t>(shape));
-    for (std::size_t i = corners_.size(); i-- > 0;) fan_corners_.push_back(corners_[i].corner);
-    if (source_.materials.size() > 1) {
-      data_.fan_materials.push_back(static_cast<std::uint16_t>(source_.face_material(record.faces[0])));
-    }
-    push_values();
-  }
-
-  void encode_edit(const Spans& record) {
-    const auto material = [&](FaceId face) { return source_.face_material(face); };
-    std::stable_sort(record.faces.begin(), record.faces.end(),
-                     [&](FaceId a, FaceId b) { return material(a) < material(b); });
-    data_.shapes.push_back(edit_shape);
-    std::vector<std::uint32_t>& block = scratch_;
-    block.assign(edit_head_words, 0);
-    for (const auto& removed : record.vertices) block.push_back(vertex_slot_[removed.merges_into]);
-    std::uint32_t groups = 0;
-    for (std::size_t i = 0; i < record.faces.size(); ++groups) {
-      const MaterialId m = material(record.faces[i]);
-      block.insert(block.end(), {m, 0});
-      const std::size_t count = block.size() - 1;
-      for (; i < record.faces.size() && material(record.faces[i]) == m; ++i, ++block[count]) {
-        rotation_[record.faces[i]] = 0;  // a fan may have been tried
-        for (std::size_t c = 0; c < 3; ++c) block.push_back(vertex_slot_[indices_[3 * record.faces[i] + c]]);
-      }
-    }
-    for (const auto& [corner, to] : corners_) {
-      block.insert(block.end(), {corner, vertex_slot_[indices_[corner]] ^ vertex_slot_[to]});
-    }
-    for (const std::uint32_t m : moves_) block.push_back(vertex_slot_[log_.moved_[m]]);
-    const auto length = static_cast<std::uint32_t>(block.size() + 1);
-    block.push_back(length);
-    const auto count = [](const auto& array) { return static_cast<std::uint32_t>(array.size()); };
-    const std::uint32_t head[edit_head_words] = {length, count(record.vertices), count(record.faces),
-                                                 groups, count(corners_),        count(moves_)};
-    std::copy(std::begin(head), std::end(head), block.begin());
-    data_.edits.insert(data_.edits.end(), block.rbegin(), block.rend());
-    push_values();
-  }
-
-  void push_values() {
-    const std::uint32_t words = log_.value_words_;
-    for (std::size_t i = moves_.size(); i-- > 0;) {
-      std::uint32_t old[max_value_words];
-      get_value(pointers(values_), log_.moved_[moves_[i]], old);
-      const std::uint32_t* now = move_words(moves_[i]);
-      for (std::uint32_t w = words; w-- > 0;) data_.value_xor.push_back(old[w] ^ now[w]);
+      parallel_for_each(lane_count, 1, context_, [&](std::size_t lane) {
+        Encoder encoder{source_, log_, vertex_slot_, replayed_};
+        for (std::size_t i = begin; i != end; ++i) {
+          if (stretches_[i].lane == lane) encoder.encode(stretches_[i].records, encoded_[i]);
+        }
+      });
     }
   }
 
@@ -379,19 +152,19 @@ class Recorder {
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
       const MaterialId m = source_.face_material(f);
       ++data_.face_begin[m + 1];
-      if (rotation_[f] == in_use) ++data_.base_face_counts[m];
+      if (replayed_.rotation[f] == Replayed::in_use) ++data_.base_face_counts[m];
     }
     for (std::size_t m = 0; m < materials; ++m) data_.face_begin[m + 1] += data_.face_begin[m];
     std::vector<FaceId> next(data_.face_begin.begin(), data_.face_begin.end() - 1);
     const auto give = [&](FaceId f) {
-      const std::uint32_t rotation = rotation_[f] == in_use ? 0 : rotation_[f];
+      const std::uint32_t rotation = replayed_.rotation[f] == Replayed::in_use ? 0 : replayed_.rotation[f];
       first_corner_[f] = 3 * next[source_.face_material(f)]++ + rotation;
     };
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
-      if (rotation_[f] == in_use) give(f);
+      if (replayed_.rotation[f] == Replayed::in_use) give(f);
     }
     for (std::uint32_t i = log_.record_count(); i-- > 0;) {
-      for (const FaceId f : spans(i).faces) give(f);
+      for (const FaceId f : log_.spans(i).faces) give(f);
     }
     write_base_indices();
     if (!source_.face_features.empty()) {
@@ -411,9 +184,9 @@ class Recorder {
     }
     data_.base_indices.resize(total);
     for (FaceId f = 0; f < source_.triangle_count(); ++f) {
-      if (rotation_[f] != in_use) continue;
+      if (replayed_.rotation[f] != Replayed::in_use) continue;
       std::uint64_t& at = place[source_.face_material(f)];
-      for (std::size_t c = 0; c < 3; ++c) data_.base_indices[at++] = vertex_slot_[indices_[3 * f + c]];
+      for (std::size_t c = 0; c < 3; ++c) data_.base_indices[at++] = vertex_slot_[replayed_.indices[3 * f + c]];
     }
   }
 
@@ -423,22 +196,54 @@ class Recorder {
     return first - rotation + (corner % 3 + 3 - rotation) % 3;
   }
 
-  void translate_corners() {
+  // Turned round, one after the other, corners in slots.
+  void assemble() {
     constexpr std::uint64_t three_byte_corners = 1ULL << 24U;
     data_.corner_bytes = source_.indices.size() <= three_byte_corners ? 3 : 4;
-    data_.fan_corners.resize(data_.corner_bytes * fan_corners_.size());
-    parallel_chunks(fan_corners_.size(), chunk, context_, [&](std::size_t begin, std::size_t end) {
-      std::uint8_t* out = &data_.fan_corners[data_.corner_bytes * begin];
-      constexpr std::size_t corners_ahead = 4 * fetch_ahead;
-      for (std::size_t i = begin; i != end; ++i) {
-        if (i + corners_ahead < end) __builtin_prefetch(&first_corner_[fan_corners_[i + corners_ahead] / 3]);
-        const CornerId slot = slot_corner(fan_corners_[i]);
-        std::memcpy(out, &slot, data_.corner_bytes);
-        out += data_.corner_bytes;
-      }
-    });
-    std::reverse(data_.fan_materials.begin(), data_.fan_materials.end());
-    for (std::size_t at = 0; at < data_.edits.size(); at += data_.edits[at]) {
+    std::vector<Ends> ends(encoded_.size() + 1);
+    for (std::size_t i = encoded_.size(); i-- > 0;) ends[i] = ends[i + 1] + encoded_[i];
+    data_.shapes.resize(ends[0].shapes);
+    data_.fan_corners.resize(data_.corner_bytes * ends[0].fan_corners);
+    data_.fan_materials.resize(ends[0].fan_materials);
+    data_.edits.resize(ends[0].edits);
+    data_.value_xor.resize(ends[0].value_xor);
+    parallel_for_each(encoded_.size(), 1, context_, [&](std::size_t i) { place(encoded_[i], ends[i + 1]); });
+  }
+
+  // Where in the arrays of the model the records of a stretch begin.
+  struct Ends {
+    std::size_t shapes = 0, fan_corners = 0, fan_materials = 0, edits = 0, value_xor = 0;
+
+    [[nodiscard]] Ends operator+(const Encoded& e) const noexcept {
+      return {shapes + e.shapes.size(), fan_corners + e.fan_corners.size(), fan_materials + e.fan_materials.size(),
+              edits + e.edits.size(), value_xor + e.value_xor.size()};
+    }
+  };
+
+  void place(const Encoded& from, const Ends& at) {
+    const auto turn = [](const auto& array, auto& to, std::size_t begin) {
+      std::reverse_copy(array.begin(), array.end(), to.begin() + static_cast<std::ptrdiff_t>(begin));
+    };
+    turn(from.shapes, data_.shapes, at.shapes);
+    turn(from.fan_materials, data_.fan_materials, at.fan_materials);
+    turn(from.edits, data_.edits, at.edits);
+    turn(from.value_xor, data_.value_xor, at.value_xor);
+    translate_fans(from.fan_corners, data_.fan_corners.data() + data_.corner_bytes * at.fan_corners);
+    translate_edits(at.edits, at.edits + from.edits.size());
+  }
+
+  void translate_fans(const std::vector<CornerId>& corners, std::uint8_t* out) const {
+    constexpr std::size_t ahead = 48;
+    for (std::size_t i = corners.size(); i-- > 0;) {
+      if (i >= ahead) __builtin_prefetch(&first_corner_[corners[i - ahead] / 3]);
+      const CornerId slot = slot_corner(corners[i]);
+      std::memcpy(out, &slot, data_.corner_bytes);
+      out += data_.corner_bytes;
+    }
+  }
+
+  void translate_edits(std::size_t begin, std::size_t end) {
+    for (std::size_t at = begin; at < end; at += data_.edits[at]) {
       const EditBlock block{&data_.edits[at]};
       const auto first = static_cast<std::size_t>(block.corners() - data_.edits.data());
       for (std::size_t i = 0; i < block.corner_count(); ++i) {
@@ -448,7 +253,7 @@ class Recorder {
   }
 
   void write_vertices() {
-    const VertexArrays& from = log_.moved_.empty() ? source_.vertices : values_;
+    const VertexArrays& from = log_.moved_.empty() ? source_.vertices : replayed_.values;
     const auto permute = [&](const auto& in, auto& out) {
       if (in.empty()) return;
       out.resize(in.size());
@@ -460,25 +265,19 @@ class Recorder {
     permute(from.colors, data_.vertices.colors);
   }
 
-  static constexpr std::size_t max_value_words = 9;
-  static constexpr std::size_t chunk = 16'384;      // of what is done on all threads
-  static constexpr std::uint8_t in_use = 3;         // rotation of a face that no record removed yet
-  static constexpr std::uint32_t fetch_ahead = 12;  // records
-  static constexpr VertexId pending = none - 1;     // slot of a vertex whose target is looked up
+  static constexpr std::size_t chunk = 16'384;   // of what is done on all threads
+  static constexpr VertexId pending = none - 1;  // slot of a vertex whose target is looked up
 
   const Mesh& source_;
   const Context& context_;
   EditLog log_;
   ModelData data_;
-  std::vector<VertexId> indices_;         // of the level reached, in the source's numbering
-  VertexArrays values_;                   // likewise; empty if nothing moves
+  Replayed replayed_;
+  std::vector<EditLog::Stretch> stretches_;
+  std::vector<Encoded> encoded_;          // one per stretch
   std::vector<VertexId> vertex_slot_;     // of each source vertex
   std::vector<VertexId> vertex_of_slot_;  // its inverse
   std::vector<CornerId> first_corner_;    // of each source face: 3 times its slot, plus its rotation
-  std::vector<std::uint8_t> rotation_;    // corner of the source face that is corner 0 of its slot, or in_use
-  std::vector<CornerId> fan_corners_;     // source corners, last record first until reversed
-  std::vector<RepointedCorner> corners_;
-  std::vector<std::uint32_t> moves_;
   std::vector<std::uint32_t> scratch_;
 };
 

@@ -44,6 +44,7 @@ class EditLog {
   // `most_faces_gone` are gone.
   void merge(const EditLog& other, FaceId first_face, VertexId first_vertex, std::uint64_t most_faces_gone);
 
+  // Not together with the verbs above, but merge() and join_from() may follow.
   void append(const EditRun& run);
   // Makes room for so many records of ordinary collapses.
   void reserve(std::size_t records, bool moving);
@@ -53,9 +54,37 @@ class EditLog {
 
   [[nodiscard]] std::uint32_t record_count() const noexcept { return static_cast<std::uint32_t>(records_.size()); }
 
+  // Records of one pass and lane (see EditRun).
+  struct Stretch {
+    Range records;
+    std::uint32_t pass = 0;
+    std::uint32_t lane = 0;
+  };
+  // All records in order, not too many in one stretch.
+  [[nodiscard]] std::vector<Stretch> stretches() const;
+
+  // What record `i` holds, as ranges of the log's arrays.
+  struct Spans {
+    std::span<FaceId> faces;
+    std::span<RemovedVertex> vertices;
+    std::span<RepointedCorner> corners;
+    std::uint32_t first_move = 0, moves_end = 0;
+  };
+  [[nodiscard]] Spans spans(std::uint32_t i) noexcept {
+    const RecordEnds from = i == 0 ? RecordEnds{} : records_[i - 1];
+    const RecordEnds& to = records_[i];
+    return {{faces_.data() + from.faces, faces_.data() + to.faces},
+            {vertices_.data() + from.vertices, vertices_.data() + to.vertices},
+            {corners_.data() + from.corners, corners_.data() + to.corners},
+            from.moves,
+            to.moves};
+  }
+
  private:
   friend class Recorder;
+  friend class Encoder;
   std::uint32_t value_words_;
+  std::vector<Stretch> appended_;  // empty: all of one pass and lane
   std::vector<RecordEnds> records_;
   std::vector<FaceId> faces_;
   std::vector<RemovedVertex> vertices_;
