@@ -117,6 +117,14 @@ std::uint64_t bytes_below(const std::filesystem::path& folder) {
   return bytes;
 }
 
+// Of what is wrong with the mesh itself the writer knows a triangle, but no file.
+Error in_file(Error error, const std::filesystem::path& file) {
+  std::error_code fault;
+  if (error.code != ErrorCode::BadData || std::filesystem::exists(error.where, fault)) return error;
+  error.where = file.string() + (error.where.empty() ? "" : ", " + error.where);
+  return error;
+}
+
 Status Outcrop::run(Session& session) {
   const bool osgb = as_ == "osgb";
   if (osgb && image_ == "webp") {
@@ -127,7 +135,7 @@ Status Outcrop::run(Session& session) {
   if (!loaded) return loaded.error();
   auto written = write_outcrop(std::move(loaded->mesh), tiles, options(), session.context());
   session.keep(written);
-  if (!written) return or_resume(written.error(), output_);
+  if (!written) return or_resume(in_file(written.error(), input_.file()), output_);
   const auto check = check_tileset(tiles / "tileset.json", session.context());
   if (!check) return check.error();
   std::vector<Warning> faults;

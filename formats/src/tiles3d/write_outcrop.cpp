@@ -118,6 +118,7 @@ class OutcropWriter {
  private:
   [[nodiscard]] Status prepare_folder(const std::string& build);
   void clean(const fs::path& folder, bool tiles) const;
+  void leave_no_trace() const;
   void sort_tiles();
   [[nodiscard]] unsigned photographs_at_once() const;
   [[nodiscard]] Status write_photograph(std::uint32_t segment, unsigned workers);
@@ -190,6 +191,14 @@ Status OutcropWriter::prepare_folder(const std::string& build) {
   clean(folder_ / "tiles", !options_.resume || found.empty());
   fs::remove(folder_ / "tileset.json", fault);
   return write_whole_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+// Of a build that ended before its first tile.
+void OutcropWriter::leave_no_trace() const {
+  std::error_code fault;
+  if (!fs::is_empty(folder_ / "tiles", fault) || fault) return;
+  fs::remove(folder_ / "build.json", fault);
+  for (const fs::path& folder : {folder_ / "work", folder_ / "tiles", folder_}) fs::remove(folder, fault);  // if empty
 }
 
 void OutcropWriter::sort_tiles() {
@@ -451,7 +460,10 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   ::clock_gettime(CLOCK_MONOTONIC, &before);
   auto pyramid = OutcropPyramid::build(std::move(mesh), infos_, options_.pyramid, context_);
   ::clock_gettime(CLOCK_MONOTONIC, &after);
-  if (!pyramid) return pyramid.error();
+  if (!pyramid) {
+    leave_no_trace();
+    return pyramid.error();
+  }
   report_.geometry_seconds =
       static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
   pyramid_ = std::move(*pyramid);

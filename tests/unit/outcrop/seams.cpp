@@ -77,7 +77,7 @@ Image silhouette(Mesh mesh, render::RenderOptions options) {
 // Pixels with sky in them whose surroundings are rock throughout in the other picture.
 std::size_t specks(const Image& picture, const Image& whole) {
   constexpr int sky = 100;
-  constexpr int reach = 6;
+  constexpr int reach = 2;
   std::size_t count = 0;
   for (int y = reach; y + reach < static_cast<int>(picture.height); ++y) {
     for (int x = reach; x + reach < static_cast<int>(picture.width); ++x) {
