@@ -251,31 +251,3 @@ TEST_CASE("a pyramid on disk is the same for any number of workers, and is resum
   std::ofstream{folder / "mine.txt"} << "not terrain";
   CHECK(write_terrain(*pyramid, folder, {}).error().code == ErrorCode::BadArgument);
 }
-
-TEST_CASE("real heights stay within the tolerance, without cracks, voids left out") {
-  LODESTONE_REQUIRE_DATA(root);
-  const auto source = open_raster(root / "terrain" / "srtm3_N30E079_1201.tif", {});
-  REQUIRE(source.ok());
-  CHECK((*source)->native_zoom() == 10);
-  const auto pyramid = TerrainPyramid::plan(**source, {.max_error_m = {20.0}});
-  REQUIRE(pyramid.ok());
-  const auto written = write_terrain(*pyramid, test::scratch_folder("srtm"), {});
-  REQUIRE(written.ok());
-  CHECK(written->cracks == 0);
-  for (const TerrainZoomSummary& zoom : written->zooms) {
-    CHECK(zoom.max_error_m <= zoom.tolerance_m + 0.5 * pyramid->height_step_m(zoom.zoom));
-  }
-}
-
-TEST_CASE("trenches and shelves of the whole world are within a tolerance far below what a post is wide") {
-  LODESTONE_REQUIRE_DATA(root);
-  const auto source = open_raster(root / "terrain" / "etopo5_4320x2161_i16.tif", {});
-  REQUIRE(source.ok());
-  const auto pyramid = TerrainPyramid::plan(**source, {.max_error_m = {5.0}, .max_zoom = 1});
-  REQUIRE(pyramid.ok());
-  for (const TileId& id : pyramid->all_tiles()) {
-    const auto tile = pyramid->build(id);
-    REQUIRE(tile.ok());
-    CHECK(tile->max_error_m <= pyramid->tolerance_m(id.zoom) + 0.5 * pyramid->height_step_m(id.zoom));
-  }
-}

@@ -4,8 +4,11 @@
 
 #include <lodestone/terrain.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "base/hash.h"
 #include "terrain/chains.h"
@@ -46,11 +49,31 @@ class FormulaHeights : public HeightSource {
 
 // Mountains with ridges at every scale, periodic around the globe.
 inline double ranges_m(double longitude_deg, double latitude_deg) {
-  const double a = longitude_deg * 0.017453292519943295, b = latitude_deg * 0.017453292519943295;
+  constexpr std::size_t octaves = 9;
+  // Posts of a window have few longitudes and few latitudes: their waves are kept, or tests would spend their time
+  // here.
+  struct Waves {
+    double at_deg = std::numeric_limits<double>::quiet_NaN();
+    std::array<double, octaves> values{};
+  };
+  static thread_local std::array<Waves, 1024> east{}, north{};
+  const auto waves = [](std::array<Waves, 1024> & kept, double at_deg, auto wave) -> const auto& {
+    Waves& found = kept[mix64(std::bit_cast<std::uint64_t>(at_deg)) % kept.size()];
+    if (found.at_deg != at_deg) {
+      found.at_deg = at_deg;
+      for (std::size_t octave = 0; octave < octaves; ++octave) {
+        found.values[octave] =
+            wave(3.0 * std::exp2(octave), static_cast<double>(octave), at_deg * 0.017453292519943295);
+      }
+    }
+    return found.values;
+  };
+  const auto& a = waves(east, longitude_deg, [](double k, double shift, double x) { return std::sin(k * x + shift); });
+  const auto& b = waves(north, latitude_deg,
+                        [](double k, double shift, double y) { return std::cos((k + 1.0) * y + 2.0 * shift); });
   double height_m = 0.0, scale = 3000.0;
-  for (int octave = 0; octave < 9; ++octave, scale *= 0.55) {
-    const double k = std::exp2(octave) * 3.0;
-    height_m += scale * (1.0 - 2.0 * std::fabs(std::sin(k * a + octave) * std::cos((k + 1.0) * b + 2.0 * octave)));
+  for (std::size_t octave = 0; octave < octaves; ++octave, scale *= 0.55) {
+    height_m += scale * (1.0 - 2.0 * std::fabs(a[octave] * b[octave]));
   }
   return height_m;
 }
