@@ -9,15 +9,19 @@
 namespace lodestone::terrain {
 namespace {
 
-__extension__ using Wide = __int128;
-
-// Whether d lies inside the circle through a, b, c (counter-clockwise).
+// Whether d lies inside the circle through a, b, c (counter-clockwise). The determinant is six times the volume between
+// four points of a paraboloid over a square of side 2^15, hence at most 2^60, though its terms may be more: they are
+// added modulo 2^64, which leaves the sum as it is.
 bool in_circle(Post a, Post b, Post c, Post d) {
   const std::int64_t ax = a.x - d.x, ay = a.y - d.y;
   const std::int64_t bx = b.x - d.x, by = b.y - d.y;
   const std::int64_t cx = c.x - d.x, cy = c.y - d.y;
-  const std::int64_t aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
-  return Wide{aa} * (bx * cy - by * cx) - Wide{bb} * (ax * cy - ay * cx) + Wide{cc} * (ax * by - ay * bx) > 0;
+  const auto term = [](std::int64_t squared, std::int64_t area) {
+    return static_cast<std::uint64_t>(squared) * static_cast<std::uint64_t>(area);
+  };
+  return static_cast<std::int64_t>(term(ax * ax + ay * ay, bx * cy - by * cx) -
+                                   term(bx * bx + by * by, ax * cy - ay * cx) +
+                                   term(cx * cx + cy * cy, ax * by - ay * bx)) > 0;
 }
 
 }  // namespace
@@ -34,23 +38,12 @@ void LatticeDelaunay::forget_changes() noexcept {
   changed_.clear();
 }
 
-void LatticeDelaunay::mark(std::uint32_t triangle) {
-  if (versions_[triangle] % 2 == 1) return;
-  ++versions_[triangle];
-  changed_.push_back(triangle);
-}
-
 std::uint32_t LatticeDelaunay::add_triangle() {
   const std::uint32_t triangle = triangle_count();
   corners_.resize(corners_.size() + 3, none);
   twins_.resize(twins_.size() + 3, outside);
   versions_.push_back(0);
   return triangle;
-}
-
-void LatticeDelaunay::link(std::uint32_t edge, std::uint32_t twin) {
-  twins_[edge] = twin;
-  if (twin != outside) twins_[twin] = edge;
 }
 
 void LatticeDelaunay::set_triangle(std::uint32_t triangle, std::uint32_t a, std::uint32_t b, std::uint32_t c,

@@ -71,10 +71,18 @@ class LatticeDelaunay {
   void set_triangle(std::uint32_t triangle, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t twin_ab,
                     std::uint32_t twin_bc, std::uint32_t twin_ca);
   std::uint32_t add_triangle();
-  void link(std::uint32_t edge, std::uint32_t twin);
+  // Here, so that every caller has them inline: they are most of what an insertion does.
+  void link(std::uint32_t edge, std::uint32_t twin) {
+    twins_[edge] = twin;
+    if (twin != outside) twins_[twin] = edge;
+  }
+  void mark(std::uint32_t triangle) {
+    if (versions_[triangle] % 2 == 1) return;
+    ++versions_[triangle];
+    changed_.push_back(triangle);
+  }
   void legalise(std::uint32_t edge);
   void flip(std::uint32_t edge);
-  void mark(std::uint32_t triangle);
 
   std::vector<Post> posts_;
   std::vector<std::uint32_t> corners_;

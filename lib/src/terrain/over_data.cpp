@@ -7,6 +7,8 @@ Tin tin_over_data(const LatticeDelaunay& triangulation, const TileLattice& latti
                   double step_m) {
   const std::vector<Post>& posts = triangulation.posts();
   Tin tin;
+  tin.vertices.reserve(posts.size());
+  tin.triangles.reserve(triangulation.corners().size());
   std::vector<std::uint32_t> name(posts.size(), none);
   for (std::uint32_t t = 0; t < triangulation.triangle_count(); ++t) {
     const std::uint32_t* v = triangulation.corners().data() + 3 * std::size_t{t};

@@ -275,7 +275,7 @@ class TerrainPlanner {
   }
 
   [[nodiscard]] std::uint64_t fingerprint(const TerrainPyramid& pyramid) const {
-    constexpr std::uint64_t version = 5;  // of the tiles that this code makes
+    constexpr std::uint64_t version = 6;  // of the tiles that this code makes
     std::uint64_t hash = version;
     const auto add = [&](double number) { hash = hash_combine(hash, std::bit_cast<std::uint64_t>(number)); };
     for (const std::uint64_t posts : post_hashes_) hash = hash_combine(hash, posts);

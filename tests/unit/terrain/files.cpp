@@ -207,6 +207,82 @@ TEST_CASE("a raster around the globe is closed behind its last column") {
   CHECK(at(180.0) == 4.0F);
 }
 
+TEST_CASE("a projected raster lies where its projection says, voids left out without cliffs at their rims") {
+  const fs::path folder = test::scratch_folder("projected");
+  // A plane over longitude, in Mercator's metres; one void.
+  constexpr double radius_m = 6378137.0, degree = 0.017453292519943295, step_m = 20000.0;
+  constexpr int columns = 60, rows = 50;
+  std::vector<std::vector<double>> samples(rows);
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const bool hole = i > 20 && i < 30 && j > 20 && j < 26;
+      samples[static_cast<std::size_t>(j)].push_back(hole ? -9999.0
+                                                          : 1000.0 + 100.0 * (i * step_m / radius_m / degree));
+    }
+  }
+  const double south_m = 5000000.0, north_m = south_m + (rows - 1) * step_m;
+  const fs::path file = write_grid(folder, samples, 0.0, south_m, step_m);
+  std::ofstream{folder / "grid.prj"}
+      << R"(PROJCS["Mercator",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,0]],)"
+      << R"(PRIMEM["Greenwich",0],UNIT["degree",0.017453292519943295]],PROJECTION["Mercator_1SP"],)"
+      << R"(PARAMETER["central_meridian",0],PARAMETER["scale_factor",1],PARAMETER["false_easting",0],)"
+      << R"(PARAMETER["false_northing",0],UNIT["metre",1]])";
+  const auto source = open_raster(file, {.scale = 2.0});
+  REQUIRE(source.ok());
+  const auto latitude_deg = [&](double y_m) {
+    return (2.0 * std::atan(std::exp(y_m / radius_m)) - 0.5 * 3.14159265358979) / degree;
+  };
+  CHECK((*source)->bounds().south_deg == Approx(latitude_deg(south_m - 0.5 * step_m)).margin(0.3));
+  CHECK((*source)->bounds().north_deg == Approx(latitude_deg(north_m + 0.5 * step_m)).margin(0.3));
+  constexpr std::uint32_t zoom = 3;
+  const auto first_row = static_cast<std::int64_t>((latitude_deg(south_m) + 90.0) / 180.0 * 2048.0) + 4;
+  std::vector<float> heights(std::size_t{100} * 60);
+  REQUIRE((*source)->read({zoom, 2048 + 2, first_row, 100, 60}, heights).ok());
+  std::size_t voids = 0;
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    const double longitude = post_longitude_deg(zoom, 2050 + static_cast<std::int64_t>(k % 100));
+    if (std::isnan(heights[k])) {
+      ++voids;
+      CHECK(std::fabs(longitude - 25.0 * step_m / radius_m / degree) < 1.2);
+    } else {
+      CHECK(heights[k] == Approx(2.0 * (1000.0 + 100.0 * longitude)).margin(5.0));
+    }
+  }
+  CHECK(voids > 50);
+  CHECK(voids < 900);
+}
+
+TEST_CASE("tiles list the tiles below them, and these are there") {
+  const FormulaHeights source{[](double east, double) { return 100.0 * east; }, {10.0, 40.0, 34.0, 51.0}, 4};
+  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {500.0}});
+  REQUIRE(pyramid.ok());
+  const fs::path folder = test::scratch_folder("metadata");
+  REQUIRE(write_terrain(*pyramid, folder, {.metadata_zooms = 2}).ok());
+  const auto files = tree(folder);
+  std::size_t named = 0;
+  for (const auto& [name, bytes] : files) {
+    if (name.find(".terrain") == std::string::npos) continue;
+    const auto mesh = decode_quantized_mesh({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    REQUIRE(mesh.ok());
+    const std::uint32_t zoom = static_cast<std::uint32_t>(name[0] - '0');
+    if (zoom % 2 != 0) CHECK(mesh->available.empty());
+    for (std::size_t below = 0; below < mesh->available.size(); ++below) {
+      for (const TileRange& range : mesh->available[below]) {
+        for (std::uint32_t x = range.start_x; x <= range.end_x; ++x) {
+          for (std::uint32_t y = range.start_y; y <= range.end_y; ++y, ++named) {
+            const std::string child =
+                std::to_string(zoom + 1 + below) + "/" + std::to_string(x) + "/" + std::to_string(y) + ".terrain";
+            CHECK(files.count(child) == 1);
+          }
+        }
+      }
+    }
+  }
+  // Each but the two roots, once: zooms 1 and 2 by zoom 0, 3 and 4 by zoom 2.
+  CHECK(named == pyramid->tile_count() - 2);
+  CHECK(files.at("layer.json").find("\"metadataAvailability\": 2") != std::string::npos);
+}
+
 TEST_CASE("what is no raster of heights is refused with a reason") {
   const fs::path folder = test::scratch_folder("refused");
   CHECK(open_raster(folder / "nothing.tif", {}).error().code == ErrorCode::NotFound);

@@ -166,7 +166,10 @@ TEST_CASE("projected points are spread more evenly than by chance, and smooth no
     return 5.0 * x + static_cast<double>(mix64(static_cast<std::uint64_t>(x * 1000 + y + 5)) % 100);
   });
   const auto posts = sample_posts(lattice);
-  const SampleOptions options{.keep_ratio = 0.02, .radius_posts = 14.0, .spacing_m = {90.0, 90.0}};
+  // With the second radius every third post stands for those around it.
+  const bool few = GENERATE(false, true);
+  const SampleOptions options{
+      .keep_ratio = few ? 0.006 : 0.02, .radius_posts = few ? 26.0 : 14.0, .spacing_m = {90.0, 90.0}};
   std::vector<glm::dvec3> by_chance;
   for (const Post p : random_points(posts, options)) by_chance.emplace_back(p.x, p.y, lattice.at(p.x, p.y));
   const auto moved = wlop_points(lattice, posts, options);

@@ -149,19 +149,29 @@ TEST_CASE("a world has all tiles of all zooms, each sound and within the toleran
 }
 
 TEST_CASE("all vertices at a pole have one height and one place") {
+  const bool north = GENERATE(false, true);
   std::vector<double> heights_m;
   for (const auto& [key, tile] : world()) {
-    if (tile.id.zoom != 2 || tile.id.y != 3) continue;
-    for (const std::uint32_t i : tile.north) heights_m.push_back(tile.height_m(i));
+    if (tile.id.zoom != 2 || tile.id.y != (north ? 3 : 0)) continue;
+    const auto places_m = ecef_positions_m(tile);
+    for (const std::uint32_t i : north ? tile.north : tile.south) {
+      heights_m.push_back(tile.height_m(i));
+      CHECK(std::hypot(places_m[i].x, places_m[i].y) < 1e-6);
+      CHECK(tile.normals[i] == glm::vec3{0.0F, 0.0F, north ? 1.0F : -1.0F});
+    }
   }
   REQUIRE(heights_m.size() > 8);
   CHECK(std::count(heights_m.begin(), heights_m.end(), heights_m.front()) ==
         static_cast<std::ptrdiff_t>(heights_m.size()));
 }
 
-TEST_CASE("tiles are the same for any number of workers and any order") {
-  const FormulaHeights source{test::ranges_m, {10.0, 40.0, 32.0, 61.0}, 4};
-  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {20.0}});
+TEST_CASE("tiles of every method are the same for any number of workers and any order") {
+  const FormulaHeights source{test::ranges_m, {10.0, 40.0, 32.0, 61.0}, 3};
+  const TerrainMethod method =
+      GENERATE(TerrainMethod::Greedy, TerrainMethod::EdgeCollapse, TerrainMethod::PointsRandom,
+               TerrainMethod::PointsGrid, TerrainMethod::PointsHierarchy, TerrainMethod::PointsWlop);
+  const auto pyramid =
+      TerrainPyramid::plan(source, {.method = method, .max_error_m = {50.0}, .points = {.iterations = 3}});
   REQUIRE(pyramid.ok());
   const std::uint64_t once = hash_of(build_all(*pyramid, 1));
   CHECK(hash_of(build_all(*pyramid, 2)) == once);
@@ -229,9 +239,21 @@ TEST_CASE("the gap between borders of unequal zooms is within the stated bound")
 }
 
 TEST_CASE("shared borders are one line on all zooms: no gap between unequal zooms, none between neighbours") {
-  const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 2};
-  const auto pyramid = TerrainPyramid::plan(source, {.borders = TerrainBorders::Shared, .max_error_m = {200.0}});
+  // The second is a high plain: by themselves its coarser zooms, which may go down to 0, would have coarser steps.
+  const bool plain = GENERATE(false, true);
+  const auto plain_m = [](double longitude, double latitude) {
+    return 8000.0 + 0.002 * test::ranges_m(longitude, latitude);
+  };
+  const FormulaHeights source{
+      plain ? FormulaHeights::Formula{plain_m} : test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 2};
+  TerrainOptions options{.max_error_m = {plain ? 0.5 : 200.0}};
+  const auto nested = TerrainPyramid::plan(source, options);
+  options.borders = TerrainBorders::Shared;
+  const auto pyramid = TerrainPyramid::plan(source, options);
   REQUIRE(pyramid.ok());
+  CHECK((nested->height_step_m(1) > nested->height_step_m(2)));
+  CHECK(pyramid->height_step_m(0) == pyramid->height_step_m(2));
+  CHECK(pyramid->height_step_m(1) == pyramid->height_step_m(2));
   const Tiles tiles = build_all(*pyramid);
   check_borders(tiles);
   double most_gap_m = 0.0;
@@ -275,7 +297,7 @@ TEST_CASE("shared borders are one line on all zooms: no gap between unequal zoom
 }
 
 TEST_CASE("a pyramid's graph is valid and cuts show every part of the globe once, finer where the eye is") {
-  const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 3};
+  const FormulaHeights source{[](double, double north) { return 10.0 * north; }, {-180.0, -90.0, 180.0, 90.0}, 3};
   const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {100.0}});
   REQUIRE(pyramid.ok());
   const std::vector<std::uint32_t> counts(pyramid->tile_count(), 1000);

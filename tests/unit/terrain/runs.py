@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Runs of `lodestone terrain` as a whole: killed and resumed, and from several raster formats.
 
-    runs.py LODESTONE killed|formats|hostile|by_zoom
+    runs.py LODESTONE killed|refused|formats|hostile|by_zoom
 """
 import array
 import json
 import math
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -38,28 +39,69 @@ def tree(folder):
     return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.rglob("*")) if file.is_file()}
 
 
+def check_layer(folder):
+    """layer.json names the tiles that there are, and no other."""
+    layer = json.loads((folder / "layer.json").read_text())
+    named = [f"{zoom}/{x}/{y}.terrain" for zoom, ranges in enumerate(layer["available"]) for box in ranges
+             for x in range(box["startX"], box["endX"] + 1) for y in range(box["startY"], box["endY"] + 1)]
+    there = sorted(str(file.relative_to(folder)) for file in folder.rglob("*.terrain"))
+    assert sorted(named) == there, f"{len(named)} tiles are named, {len(there)} are there"
+
+
 def killed(folder):
     raster = folder / "grid.asc"
     write_grid(raster)
-    terrain(raster, folder / "whole", "--threads", "2")
-    expected = tree(folder / "whole")
-    assert len(expected) > 8, f"only {len(expected)} files"
-    journal = folder / "killed" / "lodestone-terrain.unfinished"
-    command = [PROGRAM, "terrain", raster, "-o", folder / "killed", "--max-error", "20m", "--max-zoom", "4", "--quiet", "--threads", "1"]
-    for wanted in (3, 6):  # lines: a heading, then tiles
-        with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
-            while process.poll() is None:
-                if journal.exists() and journal.read_bytes().count(b"\n") >= wanted:
-                    process.send_signal(signal.SIGKILL)
-                    break
-                time.sleep(0.001)
-            process.wait()
-        assert process.returncode == -signal.SIGKILL, f"it ended with {process.returncode} before it was killed"
-        assert tree(folder / "killed") != expected
-        if "--resume" not in command:
-            command.append("--resume")
-    terrain(raster, folder / "killed", "--resume")
-    assert tree(folder / "killed") == expected, "a resumed pyramid differs"
+    methods = [("--method", name) for name in ("edge-collapse", "points-random", "points-grid", "points-hierarchy", "points-wlop")]
+    for options in [("--method", "greedy"), *methods, ("--borders", "shared"), ("--as", "3dtiles")]:
+        name = "-".join(options).replace("-", "")
+        whole, other = folder / f"{name}_whole", folder / name
+        terrain(raster, whole, "--threads", "2", *options)
+        expected = tree(whole)
+        assert len(expected) > 8, f"only {len(expected)} files"
+        if "3dtiles" not in options:
+            check_layer(whole)
+        journal = other / "lodestone-terrain.unfinished"
+        command = [PROGRAM, "terrain", raster, "-o", other, "--max-error", "20m", "--max-zoom", "4", "--quiet", "--threads", "1", *options]
+        for wanted in (3, 6) if "greedy" in options else (4,):  # lines: a heading, then tiles
+            with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+                while process.poll() is None:
+                    if journal.exists() and journal.read_bytes().count(b"\n") >= wanted:
+                        process.send_signal(signal.SIGKILL)
+                        break
+                    time.sleep(0.001)
+                process.wait()
+            assert process.returncode == -signal.SIGKILL, f"{name} ended with {process.returncode} before it was killed"
+            assert tree(other) != expected
+            if "--resume" not in command:
+                command.append("--resume")
+        terrain(raster, other, "--resume", *options)
+        assert tree(other) == expected, f"a resumed pyramid differs: {options}"
+
+
+def refused(folder):
+    """A disk that is full and folders that cannot be written: one line that names the place, and --resume goes on."""
+    def small_files_only():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000))
+
+    raster = folder / "grid.asc"
+    write_grid(raster)
+    for form in ("quantized-mesh", "3dtiles"):
+        terrain(raster, folder / f"{form}_whole", "--as", form)
+        expected = tree(folder / f"{form}_whole")
+        out = folder / form
+        command = [PROGRAM, "terrain", raster, "-o", out, "--as", form, "--max-error", "20m", "--max-zoom", "4", "--quiet"]
+        done = subprocess.run(command, capture_output=True, text=True, preexec_fn=small_files_only)
+        lines = done.stderr.strip().splitlines()
+        assert done.returncode == 2 and "cannot be written" in lines[-1] and str(out) in lines[-1], done.stderr
+        assert not [file for file in out.rglob("*.part*")], "something half written is left"
+        assert not (out / "layer.json").exists() and not (out / "tileset.json").exists()
+        terrain(raster, out, "--as", form, "--resume")
+        assert tree(out) == expected, "what a full disk stopped is resumed to other bytes"
+    (folder / "file").write_text("not a folder")
+    for place in (folder / "file", folder / "file" / "below", Path("/proc/tiles")):
+        done = subprocess.run([PROGRAM, "terrain", raster, "-o", place, "--quiet"], capture_output=True, text=True)
+        lines = done.stderr.strip().splitlines()
+        assert done.returncode in (1, 2) and str(place) in lines[-1], f"{place}: {done.returncode} {done.stderr}"
 
 
 def formats(folder):
@@ -165,4 +207,4 @@ def by_zoom(folder):
 
 with tempfile.TemporaryDirectory(prefix="lodestone-terrain-") as scratch:
     os.umask(0o022)
-    {"killed": killed, "formats": formats, "hostile": hostile, "by_zoom": by_zoom}[sys.argv[2]](Path(scratch))
+    {"killed": killed, "refused": refused, "formats": formats, "hostile": hostile, "by_zoom": by_zoom}[sys.argv[2]](Path(scratch))

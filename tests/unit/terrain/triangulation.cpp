@@ -210,3 +210,31 @@ TEST_CASE("edge collapse by count stops at the number of edges") {
   CHECK(edges <= 2000);
   CHECK(edges > 1990);
 }
+
+TEST_CASE("volume and shape weigh against each other as asked") {
+  const TileLattice lattice = hills();
+  const Tin fine = greedy_insertion(lattice, all_borders(lattice, 50.0), {5.0, 0.25}).tin;
+  struct Quality {
+    double unevenness = 0.0;  // mean squared area of triangles over their squared mean area
+    double error_m = 0.0;
+  };
+  const auto quality = [&](double volume_weight, double shape_weight) {
+    const Tin tin = collapse_edges(
+        fine, lattice,
+        {.target_edges = 2000, .step_m = 0.25, .volume_weight = volume_weight, .shape_weight = shape_weight});
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t t = 0; t < tin.triangles.size(); t += 3) {
+      const auto area = static_cast<double>(area_of(tin.vertices[tin.triangles[t]], tin.vertices[tin.triangles[t + 1]],
+                                                    tin.vertices[tin.triangles[t + 2]]));
+      sum += area;
+      squares += area * area;
+    }
+    const auto count = static_cast<double>(tin.triangles.size() / 3);
+    return Quality{squares * count / (sum * sum), measure(tin, lattice, 1e9).max_m};
+  };
+  // The shape term makes short edges go first.
+  const Quality volume = quality(0.5, 1e-10), shape = quality(1e-6, 1.0);
+  INFO(volume.unevenness << " " << shape.unevenness << " " << volume.error_m << " " << shape.error_m);
+  CHECK(volume.unevenness > 1.05 * shape.unevenness);
+  CHECK(volume.error_m < 0.8 * shape.error_m);
+}
