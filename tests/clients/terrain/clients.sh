@@ -3,7 +3,7 @@
 # Shows a generated terrain pyramid to real clients: two quantized-mesh decoders, CesiumJS, gltf-validator.
 #
 #   clients.sh tiles LODESTONE FOLDER                 makes heights and pyramids of them (LODESTONE = the program)
-#   clients.sh decoders|cesium|viewer|validator MODULES TILES
+#   clients.sh decoders|cesium|viewer|tiles3d|validator MODULES TILES
 #
 # PICTURES=PREFIX keeps what the browser shows.
 set -euo pipefail
@@ -29,6 +29,10 @@ case "$1" in
     need_browser "$2"
     need_package "$2" cesium
     node "$here/look.mjs" "$3" "$2" ${PICTURES:+"${PICTURES}_terrain.png"} ;;
+  tiles3d)
+    need_browser "$2"
+    need_package "$2" cesium
+    node "$here/tiles3d.mjs" "$3/tiles3d" "$2" ${PICTURES:+"${PICTURES}_terrain_tiles3d.png"} ;;
   viewer)
     need_browser "$2"
     need_package "$2" cesium

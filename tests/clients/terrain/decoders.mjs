@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every tile of a pyramid through two independent decoders: they agree on places, heights, triangles and borders, and
-// neighbours have the same heights on their borders.
+// neighbours have the same heights and normals on their borders.
 //
 //     node decoders.mjs NODE_MODULES TILES
 import { readFileSync, readdirSync } from 'node:fs';
@@ -46,7 +46,8 @@ for (const z of readdirSync(root).filter((name) => /^\d+$/.test(name))) {
       demand([1, 65536].includes(mine.extensions.waterMask.byteLength), `${id}: no water mask`);
       for (const [side, list, along] of [['west', mine.westIndices, v], ['east', mine.eastIndices, v],
                                          ['south', mine.southIndices, u], ['north', mine.northIndices, u]]) {
-        const line = Array.from(list, (i) => [along[i], minHeight + (maxHeight - minHeight) * h[i] / 32767]);
+        const normals = mine.extensions.vertexNormals;
+        const line = Array.from(list, (i) => [along[i], minHeight + (maxHeight - minHeight) * h[i] / 32767, normals[2 * i], normals[2 * i + 1]]);
         borders.set(`${z}/${x}/${parseInt(file)}/${side}`, line.sort((a, b) => a[0] - b[0]));
       }
       ++count;
@@ -64,7 +65,7 @@ for (const [key, line] of borders) {
   const other = borders.get(next);
   if (!other || line.length < 2) continue;
   ++compared;
-  demand(line.length === other.length && line.every(([a, h], i) => a === other[i][0] && Math.abs(h - other[i][1]) < 1e-6),
+  demand(line.length === other.length && line.every(([a, h, x, y], i) => a === other[i][0] && Math.abs(h - other[i][1]) < 1e-6 && x === other[i][2] && y === other[i][3]),
          `${key} and ${next} differ`);
 }
 demand(count > 8 && compared > 4, `only ${count} tiles and ${compared} borders`);
