@@ -127,6 +127,7 @@ void report_shifts(const FacetShiftReport& done, Report& report) {
   shifts.set("closed_t_junctions", done.closed_t_junctions);
   shifts.set("interior_faces", done.interior_faces);
   shifts.set("shifts", done.shifts);
+  shifts.set("openings_recessed", done.openings_recessed);
   shifts.set("openings_flattened", done.openings_flattened);
   shifts.set("openings_filled", done.openings_filled);
   shifts.set("parts_vanished", done.parts_vanished);

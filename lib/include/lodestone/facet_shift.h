@@ -133,6 +133,7 @@ struct FacetShiftReport {
   std::uint32_t closed_t_junctions = 0;  ///< points put into sides of neighbours
   std::uint32_t interior_faces = 0;      ///< dropped first because they cannot be seen
   std::uint32_t shifts = 0;              ///< planes that moved
+  std::uint32_t openings_recessed = 0;   ///< holes of a wall whose bars and frames gave way to a pane behind the wall
   std::uint32_t openings_flattened = 0;  ///< holes of a wall whose window came forward into the wall's plane
   std::uint32_t openings_filled = 0;     ///< flush windows and holes that the wall closed over
   std::uint32_t parts_vanished = 0;      ///< detached parts that sank into what they hang on

@@ -83,6 +83,11 @@ class Builder {
   [[nodiscard]] bool is_stale(std::uint32_t surface, std::uint64_t version, double price) const;
   void vanish_parts(double price);
   bool close_openings(double price);
+  [[nodiscard]] std::uint32_t& count_of(OpeningJob::Kind kind) noexcept {
+    return kind == OpeningJob::Kind::Recess    ? report_.openings_recessed
+           : kind == OpeningJob::Kind::Flatten ? report_.openings_flattened
+                                               : report_.openings_filled;
+  }
   void offer_around(std::uint32_t point);
   bool offer_later();
   [[nodiscard]] bool cuts_through();
@@ -345,7 +350,7 @@ bool Builder::close_openings(double price) {
     for (const Redrawn& r : job->patch.redrawn) {
       for (const std::uint32_t p : r.point) later_.push_back(p);
     }
-    ++(job->kind == OpeningJob::Kind::Flatten ? report_.openings_flattened : report_.openings_filled);
+    ++count_of(job->kind);
     any = true;
   }
   return any;

@@ -14,8 +14,7 @@ constexpr double most_inset_ratio = 0.3;  // of the shorter side
 // Draws triangles over the samples; the nearest to the viewer stays.
 class Raster {
  public:
-  explicit Raster(std::vector<MaterialId>& seen)
-      : seen_(seen), height_m_(seen.size(), -std::numeric_limits<double>::infinity()) {}
+  Raster(std::vector<MaterialId>& seen, std::vector<double>& height_m) : seen_(seen), height_m_(height_m) {}
 
   // Corners in samples and, third, towards the viewer.
   void draw(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, MaterialId material) {
@@ -44,7 +43,7 @@ class Raster {
 
  private:
   std::vector<MaterialId>& seen_;
-  std::vector<double> height_m_;
+  std::vector<double>& height_m_;
 };
 
 }  // namespace
@@ -55,6 +54,7 @@ OpeningView::OpeningView(const FacetMesh& mesh, const std::vector<std::uint32_t>
       normal_(normal),
       offset_m_(glm::dot(normal, mesh.at(loop[0]))),
       seen_(std::size_t{samples} * samples, none),
+      height_m_(seen_.size(), -std::numeric_limits<double>::infinity()),
       faces_(mesh.source->materials.size(), 0) {
   const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0};
   u_ = glm::normalize(glm::cross(helper, normal));
@@ -71,7 +71,7 @@ OpeningView::OpeningView(const FacetMesh& mesh, const std::vector<std::uint32_t>
     const glm::dvec2 at = (glm::dvec2{glm::dot(u_, mesh.at(p)), glm::dot(v_, mesh.at(p))} - low_) * scale;
     return glm::dvec3{at, glm::dot(normal, mesh.at(p))};
   };
-  Raster raster{seen_};
+  Raster raster{seen_, height_m_};
   for (const FaceId f : content) {
     const auto& p = mesh.faces[f].point;
     const MaterialId material = mesh.source->face_material(f);
@@ -81,6 +81,35 @@ OpeningView::OpeningView(const FacetMesh& mesh, const std::vector<std::uint32_t>
   for (MaterialId m = 0; m < faces_.size(); ++m) {
     if (faces_[m] != 0) materials_.push_back(m);
   }
+}
+
+double OpeningView::area_between(double from_m, double to_m) const {
+  const auto count = std::count_if(height_m_.begin(), height_m_.end(), [&](double height_m) {
+    return offset_m_ - height_m > from_m && offset_m_ - height_m < to_m;
+  });
+  const glm::dvec2 size = high_ - low_;
+  return size.x * size.y * static_cast<double>(count) / (samples * samples);
+}
+
+double OpeningView::farthest_m(double depth_m) const {
+  const glm::dvec2 step = (high_ - low_) / double{samples};
+  double farthest2 = 0.0;
+  for (int i = 0; i < samples * samples; ++i) {
+    double nearest2 = std::numeric_limits<double>::infinity();
+    // By rows, from this one on, as long as one may be nearer.
+    for (int away = 0; away < samples && away * step.y * away * step.y < nearest2; ++away) {
+      for (const int y : {i / samples - away, i / samples + away}) {
+        if (y < 0 || y >= samples) continue;
+        for (int x = 0; x < samples; ++x) {
+          const glm::dvec3 apart{step.x * (x - i % samples), step.y * away,
+                                 offset_m_ - height_m_[static_cast<std::size_t>(y * samples + x)] - depth_m};
+          nearest2 = std::min(nearest2, glm::dot(apart, apart));
+        }
+      }
+    }
+    if (std::isfinite(nearest2)) farthest2 = std::max(farthest2, nearest2);
+  }
+  return std::sqrt(farthest2) + 0.5 * glm::length(step);
 }
 
 double OpeningView::cost(MaterialId material, double area_m2) const {

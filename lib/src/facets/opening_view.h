@@ -26,6 +26,10 @@ class OpeningView {
 
   // Faces of the material among those that stand in it.
   [[nodiscard]] std::size_t face_count(MaterialId material) const noexcept { return faces_[material]; }
+  // What is seen of it between these distances behind the wall, m2.
+  [[nodiscard]] double area_between(double from_m, double to_m) const;
+  // How far any place of a sheet so far behind the wall is from what is seen, at most.
+  [[nodiscard]] double farthest_m(double depth_m) const;
   // Of showing one material all over an opening of so much area, m^4.
   [[nodiscard]] double cost(MaterialId material, double area_m2) const;
   // The frame that shows most of it, of materials that have so many faces; empty if one material looks as well.
@@ -45,6 +49,7 @@ class OpeningView {
   glm::dvec2 low_{0.0}, high_{0.0};
   double offset_m_ = 0.0;
   std::vector<MaterialId> seen_;       // per sample, row by row; none where nothing stands
+  std::vector<double> height_m_;       // of what is seen, before the origin along the normal
   std::vector<std::size_t> faces_;     // per material
   std::vector<MaterialId> materials_;  // that stand in it, ascending
 };

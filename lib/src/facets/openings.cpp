@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/disjoint_sets.h"
 #include "facets/outline.h"
@@ -23,7 +24,12 @@ constexpr double most_height_m = 0.4;  // before it
 constexpr double margin_m = 0.1;       // frames may reach so far under the wall
 constexpr double covered = 0.6;        // of the hole, at least: what went before counts as open only if it was much
 constexpr double look_ahead = 16.0;    // times the price
-constexpr double look_weight = 0.2;    // of a window that goes, beside a hole that closes
+constexpr double side_cosine = 0.1;    // what goes straight back from the outline
+constexpr double least_depth_m = 0.02;
+constexpr double sheet_m = 0.05;         // so near to a pane behind the wall
+constexpr double sheet_share = 0.8;      // lies at least so much of it
+constexpr std::size_t fewest_saved = 4;  // faces that a pane behind the wall saves at least
+constexpr double look_weight = 0.2;      // of a window that goes, beside a hole that closes
 
 struct Plane {
   glm::dvec3 normal;
@@ -46,7 +52,9 @@ class Shape {
     for (const std::uint32_t p : opening.loop) corners_.push_back(flat(mesh.at(p)));
   }
 
-  [[nodiscard]] bool contains(const glm::dvec3& at, double margin) const {
+  [[nodiscard]] bool contains(const glm::dvec3& at, double margin) const { return outside_m(at) <= margin; }
+  // How far it is from the polygon, 0 inside.
+  [[nodiscard]] double outside_m(const glm::dvec3& at) const {
     const glm::dvec2 p = flat(at);
     bool inside = false;
     double nearest = std::numeric_limits<double>::infinity();
@@ -58,7 +66,7 @@ class Shape {
       const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, b - a) / length2, 0.0, 1.0) : 0.0;
       nearest = std::min(nearest, glm::length(p - a - t * (b - a)));
     }
-    return inside || nearest < margin;
+    return inside ? 0.0 : nearest;
   }
 
  private:
@@ -95,6 +103,10 @@ bool is_side(const Opening& opening, std::uint32_t a, std::uint32_t b) {
     if (opening.loop[i] == a && opening.loop[(i + 1) % opening.loop.size()] == b) return true;
   }
   return false;
+}
+
+bool is_edge_of(const Opening& opening, std::uint32_t a, std::uint32_t b) {
+  return is_side(opening, a, b) || is_side(opening, b, a);
 }
 
 bool is_behind(const FacetMesh& mesh, const Face& face, const Plane& plane) {
@@ -207,6 +219,38 @@ bool find_filling(const FacetMesh& mesh, const Opening& opening, const Plane& pl
   return filling.empty() || outline(mesh, filling) == wanted;
 }
 
+// The faces that go straight back from the outline of the hole.
+std::vector<FaceId> sides_of(const FacetMesh& mesh, const Opening& opening, const Plane& plane,
+                             const std::vector<FaceId>& content) {
+  const auto is_upright = [&](FaceId f) {
+    return std::abs(glm::dot(mesh.faces[f].normal, plane.normal)) < side_cosine;
+  };
+  std::vector<FaceId> sides;
+  for (const FaceId f : content) {
+    const auto& p = mesh.faces[f].point;
+    if (is_upright(f) &&
+        (is_edge_of(opening, p[0], p[1]) || is_edge_of(opening, p[1], p[2]) || is_edge_of(opening, p[2], p[0]))) {
+      sides.push_back(f);
+    }
+  }
+  // And what they share an edge and a plane with.
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const Face face = mesh.faces[sides[i]];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const FaceId g : mesh.faces_of[face.point[k]]) {
+        if (!has_point(mesh.faces[g], face.point[k == 2 ? 0 : k + 1]) || !contains(content, g) ||
+            std::find(sides.begin(), sides.end(), g) != sides.end() ||
+            !lies_in(mesh, mesh.faces[g], face.normal, glm::dot(face.normal, mesh.at(face.point[0])))) {
+          continue;
+        }
+        sides.push_back(g);
+      }
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
 }  // namespace
 
 // What stands in the opening becomes one pane in the plane of the wall, drawn between the corners of the hole: the pane
@@ -235,24 +279,19 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
   });
   std::sort(content.begin(), content.end());
   if (content.size() + 2 < opening.loop.size()) return std::nullopt;
-  OpeningJob job;
   double front = 0.0;
   double back = 0.0;
   for (const FaceId f : content) {
     const Face& face = mesh_.faces[f];
-    const auto h = [&](std::size_t k) { return plane.height(mesh_.at(face.point[k])); };
     const double a = area(mesh_, f);
     const double facing = glm::dot(face.normal, plane.normal);
     if (facing > facing_cosine) front += a;
     if (facing < -facing_cosine) back += a;
-    job.cost += a * mean_square(h(0), h(1), h(2));
-    job.error_m = std::max({job.error_m, std::abs(h(0)), std::abs(h(1)), std::abs(h(2))});
     // Nothing outside may hang on what goes, unless it is hidden by the pane and the model is open anyway.
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a0 = face.point[k];
       const std::uint32_t b0 = face.point[k == 2 ? 0 : k + 1];
-      const bool on_loop = is_side(opening, a0, b0) || is_side(opening, b0, a0);
-      if (on_loop) continue;
+      if (is_edge_of(opening, a0, b0)) continue;
       for (const FaceId other : mesh_.faces_of[a0]) {
         if (!has_point(mesh_.faces[other], b0) || contains(content, other)) continue;
         if (closed_ || !is_behind(mesh_, mesh_.faces[other], plane)) return std::nullopt;
@@ -260,25 +299,85 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
     }
   }
   if (std::max(front, back) < covered * opening.area_m2 || is_sewn(mesh_, opening, content)) return std::nullopt;
-  return pane_of(opening, plane.normal, content, std::move(job), price);
+  auto pane = pane_of(opening, plane.normal, content, 0.0, price);
+  if (closed_) return pane;
+  auto behind = recess(opening, plane.normal, content, price);
+  if (!pane || !behind) return pane ? std::move(pane) : std::move(behind);
+  // Of two that are worth their price, the one that saves more of it.
+  const auto saving = [&](const OpeningJob& j) { return price * static_cast<double>(j.patch.gone.size()) - j.cost; };
+  return saving(*behind) > saving(*pane) ? std::move(behind) : std::move(pane);
 }
 
-// With a frame as long as that is worth its faces.
+// Bars, frames and whatever else stands in the opening give way to a pane at the depth of one of its faces; the sides
+// of the opening stay. Empty if that is hardly behind the wall.
+std::optional<OpeningJob> Openings::recess(const Opening& opening, const glm::dvec3& normal,
+                                           const std::vector<FaceId>& content, double price) const {
+  const Plane plane = plane_of(mesh_, opening);
+  const std::vector<FaceId> sides = sides_of(mesh_, opening, plane, content);
+  std::vector<FaceId> inside;
+  std::set_difference(content.begin(), content.end(), sides.begin(), sides.end(), std::back_inserter(inside));
+  if (inside.size() < opening.loop.size() + fewest_saved) return std::nullopt;
+  double sum = 0.0;
+  double whole = 0.0;
+  for (const FaceId f : inside) {
+    const double a = area(mesh_, f);
+    whole += a;
+    for (const std::uint32_t p : mesh_.faces[f].point) sum -= a * plane.height(mesh_.at(p)) / 3.0;
+  }
+  // In the plane of what lies nearest to the middle of all.
+  double depth_m = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const FaceId f : inside) {
+    const double own_m = -plane.height(mesh_.at(mesh_.faces[f].point[0]));
+    const double away = std::abs(own_m - sum / whole);
+    if (away >= least || glm::dot(mesh_.faces[f].normal, normal) < facing_cosine) continue;
+    least = away;
+    depth_m = own_m;
+  }
+  if (depth_m < least_depth_m) return std::nullopt;
+  auto job = pane_of(opening, normal, inside, depth_m, price);
+  if (job) job->kind = OpeningJob::Kind::Recess;
+  return job;
+}
+
+// So far behind the wall; with a frame as long as that is worth its faces.
 std::optional<OpeningJob> Openings::pane_of(const Opening& opening, const glm::dvec3& normal,
-                                            const std::vector<FaceId>& content, OpeningJob job, double price) const {
-  job.kind = OpeningJob::Kind::Flatten;
-  job.error_m = std::hypot(job.error_m, most_deviation(mesh_, content));
+                                            const std::vector<FaceId>& content, double depth_m, double price) const {
+  const Plane plane = plane_of(mesh_, opening);
+  const Shape shape{mesh_, opening, normal};
+  OpeningJob job{.kind = OpeningJob::Kind::Flatten};
+  for (const FaceId f : content) {
+    std::array<double, 3> away{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 at = mesh_.at(mesh_.faces[f].point[k]);
+      const double height_m = plane.height(at) + depth_m;
+      const double farthest_m = std::hypot(height_m, shape.outside_m(at));
+      job.error_m = std::max(job.error_m, farthest_m);
+      // What reaches under the wall is near to that where the pane is in its plane.
+      away[k] = depth_m == 0.0 ? height_m : farthest_m;
+    }
+    job.cost += area(mesh_, f) * mean_square(away[0], away[1], away[2]);
+  }
   const OpeningView view{mesh_, opening.loop, normal, content};
+  // Behind the wall it may hardly stand where there was nothing.
+  if (depth_m != 0.0 && view.area_between(depth_m - sheet_m, depth_m + sheet_m) < sheet_share * opening.area_m2)
+    return std::nullopt;
   const Site site{mesh_, opening, normal, content, view};
   const auto with = [&](auto draw) -> std::optional<OpeningJob> {
     double look_cost = 0.0;
-    auto patch = draw(site, look_cost);
+    auto patch = draw(site, depth_m, look_cost);
     if (!patch) return std::nullopt;
     OpeningJob made = job;
     made.patch = std::move(*patch);
     made.cost += look_cost;
     return made;
   };
+  if (depth_m != 0.0) job.error_m = std::max(job.error_m, view.farthest_m(depth_m));
+  // The corners of a surveyed opening do not lie in one plane.
+  double warp_m = 0.0;
+  for (const std::uint32_t p : opening.loop) warp_m = std::max(warp_m, std::abs(plane.height(mesh_.at(p))));
+  job.error_m += warp_m;
+  job.error_m = std::hypot(job.error_m, most_deviation(mesh_, content));
   auto framed = with(draw_framed_pane);
   if (framed && framed->key() <= price) return framed;
   auto whole = with(draw_pane);

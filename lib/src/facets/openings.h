@@ -16,7 +16,7 @@ namespace lodestone::facets {
 
 // What is done with an opening, and its price.
 struct OpeningJob {
-  enum class Kind : std::uint8_t { Flatten, Fill };
+  enum class Kind : std::uint8_t { Recess, Flatten, Fill };
   Kind kind = Kind::Fill;
   Patch patch;
   double cost = 0.0;  // integral of squared distance
@@ -48,8 +48,10 @@ class Openings {
   };
   [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price);
   [[nodiscard]] std::optional<OpeningJob> pane_of(const Opening& opening, const glm::dvec3& normal,
-                                                  const std::vector<FaceId>& content, OpeningJob job,
+                                                  const std::vector<FaceId>& content, double depth_m,
                                                   double price) const;
+  [[nodiscard]] std::optional<OpeningJob> recess(const Opening& opening, const glm::dvec3& normal,
+                                                 const std::vector<FaceId>& content, double price) const;
   [[nodiscard]] PointCells::Box box_of(const Opening& opening) const;
 
   const FacetMesh& mesh_;

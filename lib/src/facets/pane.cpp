@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "facets/outline.h"
 
@@ -16,9 +17,11 @@ class PaneMaker {
  public:
   explicit PaneMaker(const Site& site) : site_(site), mesh_(site.mesh) {}
 
-  [[nodiscard]] std::optional<Patch> whole(double& look_cost) {
+  [[nodiscard]] std::optional<Patch> whole(double depth_m, double& look_cost) {
+    auto ring = outer_ring(depth_m);
+    if (!ring) return std::nullopt;
     Sheet pane;
-    pane.corners = outer_ring();
+    pane.corners = std::move(*ring);
     if (!cut(pane, {pane.corners}, site_.opening.area_m2)) return std::nullopt;
     look_cost = std::numeric_limits<double>::infinity();
     for (MaterialId m = 0; m < mesh_.source->materials.size(); ++m) {
@@ -29,27 +32,31 @@ class PaneMaker {
       pane.material = m;
     }
     sheets_.push_back(std::move(pane));
-    return sheets_[0].material == none ? std::nullopt : draw();
+    return sheets_[0].material == none ? std::nullopt : draw(depth_m);
   }
 
-  [[nodiscard]] std::optional<Patch> framed(double& look_cost) {
+  [[nodiscard]] std::optional<Patch> framed(double depth_m, double& look_cost) {
     const std::size_t frame_faces = site_.opening.loop.size() + 4;
     if (site_.content.size() <= frame_faces + 2) return std::nullopt;
     const auto found = site_.view.best_frame(site_.opening.area_m2, frame_faces, 2);
-    if (!found || !take_points(found->corners)) return std::nullopt;
+    if (!found) return std::nullopt;
+    auto ring = outer_ring(depth_m);
+    if (!ring) return std::nullopt;
+    std::vector<glm::dvec3> corners{found->corners.begin(), found->corners.end()};
+    for (glm::dvec3& c : corners) c -= depth_m * site_.normal;
+    const auto hole = take_points(corners);
+    if (hole.empty()) return std::nullopt;
     look_cost = found->cost;
     Sheet frame{.material = found->frame};
     Sheet pane{.material = found->pane};
-    std::vector<Corner> hole;
-    for (std::size_t i = 0; i < 4; ++i) hole.push_back({patch_.moved[i].first, glm::dvec3{patch_.moved[i].second}});
     pane.corners.assign(hole.rbegin(), hole.rend());
-    frame.corners = outer_ring();
+    frame.corners = std::move(*ring);
     const double pane_m2 = 0.5 * glm::length(glm::cross(hole[2].at - hole[0].at, hole[3].at - hole[1].at));
     if (!cut(pane, {pane.corners}, pane_m2) || !cut(frame, {frame.corners, hole}, site_.opening.area_m2 - pane_m2))
       return std::nullopt;
     frame.corners.insert(frame.corners.end(), hole.begin(), hole.end());
     sheets_ = {std::move(frame), std::move(pane)};
-    return draw();
+    return draw(depth_m);
   }
 
  private:
@@ -70,10 +77,15 @@ class PaneMaker {
     bool taken;
   };
 
-  [[nodiscard]] std::vector<Corner> outer_ring() const {
+  // Along the opening: its own corners, or others behind them.
+  [[nodiscard]] std::optional<std::vector<Corner>> outer_ring(double depth_m) {
     std::vector<Corner> ring;
     for (auto p = site_.opening.loop.rbegin(); p != site_.opening.loop.rend(); ++p) ring.push_back({*p, mesh_.at(*p)});
-    return ring;
+    if (depth_m == 0.0) return ring;
+    std::vector<glm::dvec3> corners;
+    for (const Corner& c : ring) corners.push_back(c.at - depth_m * site_.normal);
+    ring = take_points(corners);
+    return ring.empty() ? std::nullopt : std::optional{std::move(ring)};
   }
 
   [[nodiscard]] bool cut(Sheet& sheet, const std::vector<std::vector<Corner>>& rings, double area_m2) const {
@@ -87,8 +99,8 @@ class PaneMaker {
   }
   [[nodiscard]] double facing(FaceId f) const { return std::abs(glm::dot(mesh_.faces[f].normal, site_.normal)); }
 
-  // Points that only the content uses become the corners of the pane.
-  bool take_points(const std::array<glm::dvec3, 4>& corners) {
+  // Points that only the content uses become these corners; none if there are too few.
+  std::vector<Corner> take_points(const std::vector<glm::dvec3>& corners) {
     std::vector<std::uint32_t> points;
     for (const FaceId f : site_.content) {
       for (const std::uint32_t p : mesh_.faces[f].point) {
@@ -99,20 +111,23 @@ class PaneMaker {
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
     std::erase_if(points, [&](std::uint32_t p) {
-      return std::find(site_.opening.loop.begin(), site_.opening.loop.end(), p) != site_.opening.loop.end();
+      return std::find(site_.opening.loop.begin(), site_.opening.loop.end(), p) != site_.opening.loop.end() ||
+             std::any_of(patch_.moved.begin(), patch_.moved.end(), [p](const auto& m) { return m.first == p; });
     });
-    if (points.size() < corners.size()) return false;
+    if (points.size() < corners.size()) return {};
+    std::vector<Corner> taken;
     for (const glm::dvec3& corner : corners) {
       const auto nearest = std::min_element(points.begin(), points.end(), [&](std::uint32_t a, std::uint32_t b) {
         return glm::length(mesh_.at(a) - corner) < glm::length(mesh_.at(b) - corner);
       });
       patch_.moved.emplace_back(*nearest, glm::vec3{corner});
+      taken.push_back({*nearest, glm::dvec3{glm::vec3{corner}}});
       points.erase(nearest);
     }
-    return true;
+    return taken;
   }
 
-  [[nodiscard]] std::optional<Patch> draw() {
+  [[nodiscard]] std::optional<Patch> draw(double depth_m) {
     find_free();
     for (Sheet& sheet : sheets_) {
       if (!choose_faces(sheet)) return std::nullopt;
@@ -120,7 +135,7 @@ class PaneMaker {
     for (Sheet& sheet : sheets_) {
       if (!choose_vertices(sheet)) return std::nullopt;
     }
-    patch_.surface = mesh_.faces[site_.opening.wall].surface;
+    patch_.surface = mesh_.faces[depth_m == 0.0 ? site_.opening.wall : sheets_.back().look].surface;
     patch_.normal = site_.normal;
     std::vector<FaceId> used;
     for (const Sheet& sheet : sheets_) {
@@ -210,8 +225,12 @@ class PaneMaker {
 
 }  // namespace
 
-std::optional<Patch> draw_pane(const Site& site, double& look_cost) { return PaneMaker{site}.whole(look_cost); }
+std::optional<Patch> draw_pane(const Site& site, double depth_m, double& look_cost) {
+  return PaneMaker{site}.whole(depth_m, look_cost);
+}
 
-std::optional<Patch> draw_framed_pane(const Site& site, double& look_cost) { return PaneMaker{site}.framed(look_cost); }
+std::optional<Patch> draw_framed_pane(const Site& site, double depth_m, double& look_cost) {
+  return PaneMaker{site}.framed(depth_m, look_cost);
+}
 
 }  // namespace lodestone::facets

@@ -19,9 +19,11 @@ struct Site {
   const OpeningView& view;
 };
 
-// Of the one material that shows most. Empty if there are not enough faces or vertices, or the outline crosses itself.
-[[nodiscard]] std::optional<Patch> draw_pane(const Site& site, double& look_cost);
+// In the plane of the wall, sewn to the corners of the opening, or so far behind it, of points that nothing else hangs
+// on. Of the one material that shows most. Empty if there are not enough faces, points or vertices, or the outline
+// crosses itself.
+[[nodiscard]] std::optional<Patch> draw_pane(const Site& site, double depth_m, double& look_cost);
 // With a frame around it; empty too if that looks no better or has no fewer faces than what is there.
-[[nodiscard]] std::optional<Patch> draw_framed_pane(const Site& site, double& look_cost);
+[[nodiscard]] std::optional<Patch> draw_framed_pane(const Site& site, double depth_m, double& look_cost);
 
 }  // namespace lodestone::facets

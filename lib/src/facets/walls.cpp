@@ -63,10 +63,17 @@ void Walls::grow(FaceId seed, std::vector<FaceId>& loose) {
 
 void Walls::find_openings(Wall& wall) const {
   if (wall.faces.size() < fewest_faces) return;
-  const auto plain =
-      std::find_if(wall.faces.begin(), wall.faces.end(), [&](FaceId f) { return !is_sliver(mesh_, mesh_.faces[f]); });
-  if (plain == wall.faces.end()) return;
-  const glm::dvec3 normal = mesh_.faces[*plain].normal;
+  // The largest face tells the plane.
+  FaceId plain = none;
+  double largest = 0.0;
+  for (const FaceId f : wall.faces) {
+    const double area = glm::length(mesh_.area_vector(mesh_.faces[f]));
+    if (area <= largest || is_sliver(mesh_, mesh_.faces[f])) continue;
+    largest = area;
+    plain = f;
+  }
+  if (plain == none) return;
+  const glm::dvec3 normal = mesh_.faces[plain].normal;
   for (auto& loop : chain(mesh_, outline(mesh_, wall.faces), normal)) {
     const double area_m2 = -signed_area(mesh_, loop, normal);
     if (area_m2 <= 0.0 || loop.size() > most_corners) continue;
@@ -75,7 +82,7 @@ void Walls::find_openings(Wall& wall) const {
       opening.perimeter_m += glm::length(mesh_.at(loop[i]) - mesh_.at(loop[(i + 1) % loop.size()]));
     }
     opening.loop = std::move(loop);
-    opening.wall = *plain;
+    opening.wall = plain;
     opening.area_m2 = area_m2;
     wall.openings.push_back(std::move(opening));
   }

@@ -71,6 +71,24 @@ TEST_CASE("a loose window comes forward, is sewn to its hole, and goes whole at 
   CHECK(flush);
 }
 
+TEST_CASE("the bars of a deep window give way to its pane before that comes forward") {
+  Mesh mesh = wall_with_loose_window(0.2F);
+  for (const float x : {4.2F, 4.4F, 4.6F, 4.8F}) {
+    add_quad(mesh, 0, {{{x, 0.18F, 2.02F}, {x + 0.03F, 0.18F, 2.02F}, {x + 0.03F, 0.18F, 3.48F}, {x, 0.18F, 3.48F}}});
+  }
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  CHECK(built->report.openings_recessed == 1);
+  CHECK(built->report.openings_flattened == 1);
+  // All but the wall of eight and a pane of two is gone at the depth of the bars, and the pane is where the source's
+  // is.
+  const Mesh shown = built->model->extract(built->model->level_of_triangles(10));
+  REQUIRE(shown.triangle_count() == 10);
+  CHECK(built->model->error_m(built->model->level_of_triangles(10)) < 0.1F);
+  CHECK(normal_deviation_rad(mesh, shown) < 1e-6);
+  CHECK(compare(mesh, shown, {.samples = 20'000})->hausdorff_m < 0.05);
+}
+
 TEST_CASE("an opening with nothing in it stays open as long as a window would stay") {
   Mesh mesh = wall_with_loose_window(0.1F);
   mesh.indices.resize(3 * 8);
