@@ -2,7 +2,6 @@
 // Tables 2 and 3 and Figures 13 and 16 of Ao et al. 2025 on a mesh at hand.
 //
 //     bench_outcrop build MESH FOLDER RATIO [THREADS]   processor seconds, memory, bytes of a pyramid (0 = automatic)
-//     bench_outcrop first FOLDER                        the first picture
 //     bench_outcrop load MESH FOLDER                    ten distances: monolith beside pyramid
 //     bench_outcrop error MESH [FOLDER]                 error over simplification, beside libmeshoptimizer and the
 //     meshes
@@ -15,8 +14,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <string>
 
 #include <lodestone/edge_collapse.h>
@@ -27,8 +24,7 @@
 
 #include "meshoptimizer_peer.h"
 #include "processor_clock.h"
-#include "viewer/headless/stage.h"
-#include "viewer/render/tile_scene.h"
+#include "viewer/headless/headless.h"
 
 namespace {
 
@@ -42,29 +38,6 @@ double peak_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-// Pages of the libraries that draw in software: what a machine with a graphics card has in its driver.
-double driver_mb() {
-  std::ifstream maps{"/proc/self/smaps"};
-  double kb = 0.0;
-  bool inside = false;
-  for (std::string line; std::getline(maps, line);) {
-    if (line.find("-") < line.find(" "))
-      inside = line.find("libLLVM") != line.npos || line.find("libOSMesa") != line.npos;
-    if (inside && line.rfind("Rss:", 0) == 0) kb += std::atof(line.c_str() + 4);
-  }
-  return kb / 1024.0;
-}
-
-// Memory of the process's own.
-double private_mb() {
-  std::ifstream status{"/proc/self/status"};
-  for (std::string word; status >> word;) {
-    double kb = 0.0;
-    if (word == "RssAnon:" && status >> kb) return kb / 1024.0;
-  }
-  return 0.0;
 }
 
 Mesh read(const char* file, LoadTextures textures) {
@@ -98,35 +71,6 @@ int build(const char* file, const char* folder, double ratio, unsigned threads) 
   return 0;
 }
 
-// From nothing to a picture of the whole, as a program that is told to open a tileset: the root tile alone, drawn once,
-// with one sample a pixel.
-int first(const char* folder) {
-  const double start = wall_seconds();
-  const double processor = processor_seconds();
-  const auto pyramid = TilePyramid::open(std::filesystem::path{folder} / "tileset.json");
-  if (!pyramid) return 2;
-  auto stage = render::Stage::create();
-  if (!stage) return 2;
-  render::TileScene scene{(*stage)->gl(), *pyramid};
-  render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
-  options.camera.yaw_rad = scene.yaw_rad();
-  const auto view = render::view_of(options, (*pyramid)->bounds(), (*pyramid)->origin(), {});
-  render::FrameSize size = render::frame_size(options);
-  size.coverage_samples = 1;
-  const auto frame = render::Frame::create((*stage)->gl(), size);
-  if (!view || !frame) return 2;
-  const double ready = wall_seconds();
-  scene.update(*view, 0.0);
-  (*stage)->renderer().draw(*frame, *view, (*pyramid)->bounds(), scene.items(), options.look);
-  const Image picture = (*stage)->presenter().read(*frame);
-  std::printf(
-      "{\"first_picture_seconds\": %.2f, \"processor_seconds\": %.2f, \"of_that_before_drawing\": %.2f, "
-      "\"peak_megabytes\": %.0f, \"private_megabytes\": %.0f, \"driver_megabytes\": %.0f, \"triangles\": %u}\n",
-      wall_seconds() - start, processor_seconds() - processor, ready - start, peak_mb(), private_mb(), driver_mb(),
-      scene.triangle_count());
-  return picture.empty() ? 2 : 0;
-}
-
 // Ten distances between nearly touching and all of it small, seen from the south.
 int load(const char* file, const char* folder) {
   const auto pyramid = TilePyramid::open(std::filesystem::path{folder} / "tileset.json");
@@ -134,6 +78,7 @@ int load(const char* file, const char* folder) {
   const Box& box = (*pyramid)->bounds();
   std::vector<render::Picture> tiled;
   render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
+  options.look.lighting = render::Lighting::Photograph;
   const auto place = [&](int step) {
     options.camera.target_m = (*pyramid)->origin() + box.center();
     options.camera.eye_m = *options.camera.target_m - glm::dvec3{0.0, 0.5 * box.diagonal_m() * (0.3 + 0.5 * step), 0.0};
@@ -216,11 +161,10 @@ int main(int argc, char** argv) {
   if (mode == "build" && argc >= 5) {
     return build(argv[2], argv[3], std::atof(argv[4]), argc > 5 ? static_cast<unsigned>(std::atoi(argv[5])) : 0);
   }
-  if (mode == "first" && argc == 3) return first(argv[2]);
   if (mode == "load" && argc == 4) return load(argv[2], argv[3]);
   if (mode == "error" && (argc == 3 || argc == 4)) return error(argv[2], argc == 4 ? argv[3] : "");
   std::fprintf(stderr,
-               "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | first FOLDER | load MESH FOLDER | error MESH "
+               "usage: bench_outcrop build MESH FOLDER RATIO [THREADS] | load MESH FOLDER | error MESH "
                "[FOLDER]\n");
   return 1;
 }

@@ -42,13 +42,16 @@ class Render final : public Verb {
   double error_px_ = 1.0;
   bool untextured_ = false;
   bool white_ = false;
+  bool unlit_ = false;
+  bool lit_ = false;
   std::uint32_t sheet_levels_ = 0;
   std::filesystem::path cache_;
   std::uint64_t cache_bytes_ = TileCacheOptions{}.max_bytes;
 };
 
 void Render::declare(Arguments& arguments) {
-  input_.declare(arguments, "FILE", "Mesh, .lode or .lodg file, or tileset.json (its address, if it is on the web)");
+  input_.declare(arguments, "FILE",
+                 "Mesh, .lode or .lodg file, tileset.json (its address, if it is on the web) or .osgb root");
   arguments.file("-o,--output", output_, "Picture to write: .png, .jpg or .webp", Need::Required);
   level_.declare(arguments);
   arguments.file("--plan", plan_, "With --perceptual: the level that a plan made by 'distances' needs", Need::Optional);
@@ -58,6 +61,8 @@ void Render::declare(Arguments& arguments) {
   arguments.flag("--cluster-colors", cluster_colors_, "A colour for each cluster of a .lodg file");
   arguments.number("--error-px", error_px_, 1e-3, 1e6, "Of a .lodg file: error on the screen that is allowed, pixels");
   arguments.flag("--untextured", untextured_, "Leave textures out");
+  arguments.flag("--unlit", unlit_, "Colours as they are, without lamps; how tilesets with photographs are drawn");
+  arguments.flag("--lit", lit_, "Under lamps, how everything else is drawn");
   arguments.flag("--white", white_, "White background");
   arguments.file("--tile-cache", cache_, "Folder for copies of tiles, of a tileset on the web or a slow disk",
                  Need::Optional);
@@ -129,12 +134,15 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
 
 Status Render::run(Session& session) {
   if (auto writable = check_output(output_); !writable) return writable;
+  if (unlit_ && lit_) return Error{ErrorCode::BadArgument, "it is either --unlit or --lit", ""};
   render::RenderOptions options;
   camera_.apply(options);
   options.look.wireframe = wireframe_;
   if (untextured_) options.look.coloring = render::Coloring::Untextured;
   if (lod_colors_) options.look.coloring = render::Coloring::Lod;
   if (cluster_colors_) options.look.coloring = render::Coloring::Clusters;
+  if (unlit_) options.look.lighting = render::Lighting::Photograph;
+  if (lit_) options.look.lighting = render::Lighting::Lamps;
   if (white_) options.look.background = render::Background::White;
   auto picture = draw(session, options);
   session.keep(picture);

@@ -16,12 +16,14 @@ class View final : public Verb {
   }
   [[nodiscard]] std::string example() const override { return "lodestone view house.lode"; }
   void declare(Arguments& arguments) override {
-    arguments.file("FILE", file_, "Mesh or .lode file", Need::Required);
+    arguments.file("FILE", file_, "Mesh, .lode or .lodg file, tileset.json or root of an .osgb tree", Need::Required);
     arguments.flag("--perceptual", perceptual_, "Level by the camera's distance: at most half a pixel off");
     arguments.file("--plan", plan_, "Level by the camera's distance: what 'distances' measured to be seen",
                    Need::Optional);
     arguments.file("--tile-cache", cache_, "Folder for copies of tiles, of a tileset on the web or a slow disk",
                    Need::Optional);
+    arguments.flag("--unlit", unlit_, "Colours as they are, without lamps: what tilesets with photographs start with");
+    arguments.flag("--lit", lit_, "Under lamps, always");
   }
   [[nodiscard]] Status run(Session& session) override;
 
@@ -30,6 +32,8 @@ class View final : public Verb {
   bool perceptual_ = false;
   std::filesystem::path plan_;
   std::filesystem::path cache_;
+  bool unlit_ = false;
+  bool lit_ = false;
 };
 
 // lodestone-view beside this program, as installed; else in the build tree; else on the PATH.
@@ -45,6 +49,8 @@ Status View::run(Session& session) {
   if (perceptual_) command.emplace_back("--perceptual");
   if (!plan_.empty()) command.insert(command.end(), {"--plan", plan_.string()});
   if (!cache_.empty()) command.insert(command.end(), {"--tile-cache", cache_.string()});
+  if (unlit_) command.emplace_back("--unlit");
+  if (lit_) command.emplace_back("--lit");
   const auto ended = run_to_end(std::move(command));
   if (!ended) {
     return Error{ErrorCode::NotFound, "cannot be started, install lodestone-view beside lodestone", program};

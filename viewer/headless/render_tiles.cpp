@@ -16,6 +16,7 @@ Result<Picture> render_tiles(std::shared_ptr<const TilePyramid> pyramid, const R
     return Error{ErrorCode::BadData, scene.status().failures.front(), "the root tile"};
   }
   RenderOptions seen = options;
+  seen.look.lighting = scene.lighting(options.look.lighting);
   if (!seen.camera.yaw_rad) seen.camera.yaw_rad = scene.yaw_rad();
   const auto view = view_of(seen, pyramid->bounds(), pyramid->origin(), {});
   if (!view) return view.error();
@@ -26,7 +27,7 @@ Result<Picture> render_tiles(std::shared_ptr<const TilePyramid> pyramid, const R
   picture.tiles = static_cast<std::uint32_t>(scene.items().size());
   for (int pass = 0; pass < 2; ++pass) {  // the first compiles shaders
     const auto start = std::chrono::steady_clock::now();
-    on.renderer().draw(*frame, *view, pyramid->bounds(), scene.items(), options.look);
+    on.renderer().draw(*frame, *view, pyramid->bounds(), scene.items(), seen.look);
     on.gl().finish();
     picture.frame_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -69,6 +69,7 @@ namespace lodestone::render {
   X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample, renderbuffer_storage_multisample) \
   X(PFNGLSHADERSOURCEPROC, ShaderSource, shader_source)                                                        \
   X(PFNGLTEXIMAGE2DPROC, TexImage2D, tex_image_2d)                                                             \
+  X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D, tex_sub_image_2d)                                                   \
   X(PFNGLTEXPARAMETERIPROC, TexParameteri, tex_parameter_i)                                                    \
   X(PFNGLUNIFORM1FPROC, Uniform1f, uniform_1f)                                                                 \
   X(PFNGLUNIFORM1IPROC, Uniform1i, uniform_1i)                                                                 \

@@ -19,6 +19,7 @@ enum class Coloring : std::uint8_t {
 };
 
 enum class Lighting : std::uint8_t {
+  Automatic,   ///< Photograph for tilesets with photographs on them, as they are meant to be seen; else Lamps
   Lamps,       ///< a key light, a fill light and a sky: shape shows
   Photograph,  ///< none: colours as they are, for photographs that have their light in them
 };
@@ -26,7 +27,7 @@ enum class Lighting : std::uint8_t {
 struct Look {
   Coloring coloring = Coloring::Materials;
   Background background = Background::Gradient;
-  Lighting lighting = Lighting::Lamps;
+  Lighting lighting = Lighting::Automatic;
   /// Draw triangle edges over the surface.
   bool wireframe = false;
 };

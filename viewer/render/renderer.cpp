@@ -109,7 +109,9 @@ void Renderer::draw(const Frame& frame, const View& view, const Box& bounds, std
   // A uniform that a program lacks has place -1, and setting it does nothing.
   gl_->uniform_1f(surface.wire_px, look.wireframe ? 1.1F * static_cast<float>(frame.size().supersample) : 0.0F);
   gl_->uniform_1i(surface.lod_colors, lod_colors ? 1 : 0);
-  gl_->uniform_1i(surface.unlit, look.lighting == Lighting::Photograph ? 1 : 0);
+  // Colours that tell something else than the photograph are under lamps, so that shape shows.
+  const bool unlit = look.lighting == Lighting::Photograph && look.coloring == Coloring::Materials;
+  gl_->uniform_1i(surface.unlit, unlit ? 1 : 0);
   gl_->active_texture(GL_TEXTURE0);
 
   gl_->enable(GL_DEPTH_TEST);

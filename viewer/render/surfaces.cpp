@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "surfaces.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include <lodestone/formats.h>
@@ -11,28 +11,43 @@ namespace {
 
 float to_linear(float c) { return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F); }
 
-Result<Image> pixels_of(const Texture& texture) {
-  if (texture.image) return *texture.image;
-  if (texture.encoded && !texture.encoded->empty()) return decode_image(*texture.encoded, texture.name);
-  if (!texture.path.empty()) return read_image(texture.path);
-  return Error{ErrorCode::NotFound, "texture has no pixels, it is drawn white", texture.name};
+// Shared where they are decoded already.
+Result<std::shared_ptr<const Image>> pixels_of(const Texture& texture) {
+  if (texture.image) return texture.image;
+  const bool inside = texture.encoded && !texture.encoded->empty();
+  if (!inside && texture.path.empty()) {
+    return Error{ErrorCode::NotFound, "texture has no pixels, it is drawn white", texture.name};
+  }
+  auto image = inside ? decode_image(*texture.encoded, texture.name) : read_image(texture.path);
+  if (!image) return image.error();
+  return std::make_shared<const Image>(std::move(*image));
 }
 
-// Any channel count as RGBA, rows bottom up as GL wants them.
-std::vector<std::uint8_t> rgba_bottom_up(const Image& image) {
-  std::vector<std::uint8_t> out(static_cast<std::size_t>(image.width) * image.height * 4);
-  std::uint8_t* to = out.data();
-  for (std::uint32_t row = image.height; row-- > 0;) {
-    for (std::uint32_t x = 0; x < image.width; ++x, to += 4) {
-      const std::uint8_t* from = image.at(x, row);
-      const bool grey = image.channels < 3;
-      to[0] = from[0];
-      to[1] = from[grey ? 0 : 1];
-      to[2] = from[grey ? 0 : 2];
-      to[3] = image.channels == 2 ? from[1] : image.channels == 4 ? from[3] : 255;
-    }
+// A row of any channel count as RGBA.
+void write_rgba(const Image& image, std::uint32_t row, std::uint8_t* to) {
+  for (std::uint32_t x = 0; x < image.width; ++x, to += 4) {
+    const std::uint8_t* from = image.at(x, row);
+    const bool grey = image.channels < 3;
+    to[0] = from[0];
+    to[1] = from[grey ? 0 : 1];
+    to[2] = from[grey ? 0 : 2];
+    to[3] = image.channels == 2 ? from[1] : image.channels == 4 ? from[3] : 255;
   }
-  return out;
+}
+
+// Rows bottom up as GL wants them, some at a time: a copy of a whole photograph would be its largest.
+void upload_rows(const Gl& gl, const Image& image) {
+  constexpr std::uint32_t most_bytes = 1U << 18;
+  const std::uint32_t strip = std::clamp(most_bytes / (4 * image.width), 1U, image.height);
+  std::vector<std::uint8_t> rows(std::size_t{4} * image.width * strip);
+  for (std::uint32_t done = 0; done < image.height; done += strip) {
+    const std::uint32_t count = std::min(strip, image.height - done);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      write_rgba(image, image.height - 1 - done - i, rows.data() + std::size_t{4} * image.width * i);
+    }
+    gl.tex_sub_image_2d(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(done), static_cast<GLsizei>(image.width),
+                        static_cast<GLsizei>(count), GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
+  }
 }
 
 // Halves an image that is larger than the driver takes.
@@ -60,10 +75,10 @@ GLuint upload(const Gl& gl, const Image& image) {
   GLuint id = 0;
   gl.gen_textures(1, &id);
   gl.bind_texture(GL_TEXTURE_2D, id);
-  const auto pixels = rgba_bottom_up(image);
   gl.pixel_store_i(GL_UNPACK_ALIGNMENT, 1);
   gl.tex_image_2d(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, static_cast<GLsizei>(image.width),
-                  static_cast<GLsizei>(image.height), 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+                  static_cast<GLsizei>(image.height), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  upload_rows(gl, image);
   gl.generate_mipmap(GL_TEXTURE_2D);
   gl.tex_parameter_i(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   gl.tex_parameter_i(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -82,14 +97,16 @@ Surfaces::Surfaces(const Gl& gl, const Surroundings& source) : gl_(gl) {
   gl.get_integer_v(GL_MAX_TEXTURE_SIZE, &max_size_px);
   for (const Texture& texture : source.textures) {
     auto image = pixels_of(texture);
-    if (!image || image->empty()) {
+    if (!image || (*image)->empty()) {
       if (!image) warnings_.push_back({image.error().message, image.error().where});
       textures_.push_back(upload_white(gl));
       continue;
     }
-    Image pixels = std::move(image).value();
-    while (std::max(pixels.width, pixels.height) > static_cast<std::uint32_t>(max_size_px)) pixels = halved(pixels);
-    textures_.push_back(upload(gl, pixels));
+    std::shared_ptr<const Image> pixels = std::move(*image);
+    while (std::max(pixels->width, pixels->height) > static_cast<std::uint32_t>(max_size_px)) {
+      pixels = std::make_shared<const Image>(halved(*pixels));
+    }
+    textures_.push_back(upload(gl, *pixels));
   }
   for (const Material& material : source.materials) {
     const glm::vec4 c = material.base_color;

@@ -19,7 +19,10 @@ void TileScene::show(std::span<const NodeId> drawn) {
   for (const NodeId n : drawn) {
     const Mesh& mesh = *pager_.content(n);
     std::unique_ptr<Tile>& tile = tiles_[n];
-    if (!tile) tile = std::make_unique<Tile>(gl_, mesh);
+    if (!tile) {
+      tile = std::make_unique<Tile>(gl_, mesh);
+      pager_.forget_pixels(n);
+    }
     items_.push_back({.geometry = &tile->geometry,
                       .surfaces = &tile->surfaces,
                       .offset_m = mesh.origin,
@@ -37,6 +40,12 @@ std::uint32_t TileScene::triangle_count() const {
 double TileScene::yaw_rad() const {
   const Mesh* root = pager_.content(0);
   return root != nullptr ? detailed_yaw_rad(SortedMesh{*root}.arrays()) : 0.0;
+}
+
+Lighting TileScene::lighting(Lighting asked) const {
+  const Mesh* root = pager_.content(0);
+  if (asked != Lighting::Automatic || root == nullptr) return asked;
+  return root->textures.empty() ? Lighting::Lamps : Lighting::Photograph;
 }
 
 }  // namespace lodestone::render

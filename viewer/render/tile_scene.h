@@ -28,6 +28,8 @@ class TileScene {
   [[nodiscard]] const Box& bounds() const { return pyramid_->bounds(); }
   /// The side that most of it faces, for a first view. 0 if the root cannot be read.
   [[nodiscard]] double yaw_rad() const;
+  /// `asked`, or if that is Automatic, Photograph where the root has photographs on it.
+  [[nodiscard]] Lighting lighting(Lighting asked) const;
   void set_error_px(double error_px) { pager_.set_error_px(error_px); }
   [[nodiscard]] PagerStatus status() const { return pager_.status(); }
   /// False while tiles are on their way or are exchanged.

@@ -135,6 +135,7 @@ void App::clear() {
   tiles_.reset();
   clusters_.reset();
   street_.reset();
+  look_.lighting = options_.lighting;
 }
 
 void App::show(const Loader::Model& model) {
@@ -160,6 +161,7 @@ void App::show(const Loader::Tiles& tiles) {
   tiles_ = std::make_unique<TileScene>(*gl_, tiles);
   control_.mode = LevelMode::Automatic;
   control_.max_error_px = 1.0F;
+  look_.lighting = tiles_->lighting(options_.lighting);
   for (const std::string& line : tiles_->status().failures) message_ = line;
   frame(tiles->bounds(), tiles_->yaw_rad());
 }
@@ -273,6 +275,9 @@ void App::use_keys() {
         break;
       case 'l':
         look_.coloring = look_.coloring == Coloring::Lod ? Coloring::Materials : Coloring::Lod;
+        break;
+      case 'u':
+        look_.lighting = look_.lighting == Lighting::Photograph ? Lighting::Lamps : Lighting::Photograph;
         break;
       case 'f':
         obey({.frame_model = true});

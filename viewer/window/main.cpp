@@ -40,6 +40,12 @@ int main(int argc, char** argv) {
                  "level by the camera's distance: what 'lodestone distances' measured to be seen");
   app.add_option("--tile-cache", options.tile_cache, "folder for copies of tiles that lie on the web or a slow disk");
   app.add_flag("--fly", options.fly, "fly over the model, round and round");
+  auto* unlit = app.add_flag_callback(
+      "--unlit", [&] { options.lighting = lodestone::render::Lighting::Photograph; },
+      "colours as they are, without lamps: what tilesets with photographs start with");
+  app.add_flag_callback(
+         "--lit", [&] { options.lighting = lodestone::render::Lighting::Lamps; }, "under lamps, always")
+      ->excludes(unlit);
   app.add_flag("--wireframe", options.wireframe, "draw triangle edges");
   app.add_flag("--lod-colors", options.lod_colors, "colour by triangle size");
   app.add_flag("--cluster-colors", options.cluster_colors, "a colour for each cluster of a .lodg file");

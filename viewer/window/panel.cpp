@@ -128,6 +128,9 @@ void look_controls(const PanelState& state, PanelResult& result) {
   if (ImGui::Checkbox("LOD colours", &lod_colors)) {
     state.look.coloring = lod_colors ? Coloring::Lod : Coloring::Materials;
   }
+  ImGui::SameLine();
+  bool lamps = state.look.lighting != Lighting::Photograph;
+  if (ImGui::Checkbox("Lamps", &lamps)) state.look.lighting = lamps ? Lighting::Lamps : Lighting::Photograph;
   if (state.cursor != nullptr) {
     ImGui::SetNextItemWidth(-1.0F);
     ImGui::SliderFloat("##morph", &state.morph_seconds, 0.0F, 3.0F, "morph in %.2f s");
@@ -189,7 +192,7 @@ PanelResult Panel::layout(const PanelState& state) {
     frame_graph(state);
   }
   ImGui::TextDisabled("drag: orbit  shift-drag: pan  wheel: zoom");
-  ImGui::TextDisabled("space: play  + -: level  w t l f: look");
+  ImGui::TextDisabled("space: play  + -: level  w t l u f: look");
   result.changed = ImGui::IsAnyItemActive() || ImGui::IsAnyItemHovered();
   ImGui::End();
   ImGui::Render();

@@ -9,6 +9,8 @@
 
 #include <lodestone/result.h>
 
+#include "../render/options.h"
+
 namespace lodestone::render {
 
 struct WindowOptions {
@@ -29,6 +31,7 @@ struct WindowOptions {
   std::filesystem::path plan;        ///< plan.json of `lodestone distances` for `file`
   std::filesystem::path tile_cache;  ///< folder for copies of tiles (TileCacheOptions); empty: none
   bool fly = false;                  ///< the camera flies over the model, round and round, until it is taken by hand
+  Lighting lighting = Lighting::Automatic;
   bool wireframe = false;
   bool lod_colors = false;
   bool cluster_colors = false;  ///< of a cluster graph

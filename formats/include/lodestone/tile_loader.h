@@ -53,9 +53,10 @@ struct TileCacheStatus {
 class TilePyramid {
  public:
   /// Reads the JSON only, or the index of an .osgb tree (which needs no cache and has none). The path may be an address
-  /// of the web (http://, https://). With a cache tiles are looked for there first; copies of a tileset that has
-  /// changed are not used again, and what is wrong with the cache later (a full disk, a damaged copy) costs time only.
-  /// Errors: NotFound, Unreadable, BadData with what is missing.
+  /// of the web (http://, https://): libcurl fetches it, and CURL_CA_BUNDLE in the environment may name a file of
+  /// certificates to trust instead of the system's. With a cache tiles are looked for there first; copies of a tileset
+  /// that has changed are not used again, and what is wrong with the cache later (a full disk, a damaged copy) costs
+  /// time only. Errors: NotFound, Unreadable, BadData with what is missing.
   [[nodiscard]] static Result<std::shared_ptr<const TilePyramid>> open(
       const std::filesystem::path& root, const std::optional<TileCacheOptions>& cache = std::nullopt);
   ~TilePyramid();
@@ -125,6 +126,10 @@ class TilePager {
 
   /// From the next update on.
   void set_error_px(double error_px);
+
+  /// Lets go of a tile's pixels, decoded and encoded, once they have been copied to a graphics card. Its bytes still
+  /// count towards the budget, which bounds the copies too.
+  void forget_pixels(NodeId tile);
 
   /// Of a tile that update() has returned; valid until the next update().
   [[nodiscard]] const Mesh* content(NodeId tile) const;

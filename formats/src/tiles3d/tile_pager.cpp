@@ -37,7 +37,7 @@ enum class Stage : std::uint8_t { Absent, Wanted, Loading, Resident, Failed };
 
 struct TilePager::State {
   struct Tile {
-    std::unique_ptr<const Mesh> mesh;
+    std::unique_ptr<Mesh> mesh;
     std::uint64_t bytes = 0;
     std::uint64_t last_used = 0;  // frame
   };
@@ -98,7 +98,7 @@ void TilePager::State::take_in(NodeId tile, Result<Mesh> mesh) {
     return;
   }
   stages[tile] = Stage::Resident;
-  tiles[tile].mesh = std::make_unique<const Mesh>(std::move(*mesh));
+  tiles[tile].mesh = std::make_unique<Mesh>(std::move(*mesh));
   tiles[tile].bytes = bytes_of(*tiles[tile].mesh);
   tiles[tile].last_used = frame;
   resident[tile] = 1;
@@ -241,6 +241,14 @@ std::span<const NodeId> TilePager::settle(const View& view) {
     if (s.status.wanted_tiles == 0) return drawn;
     std::unique_lock lock{s.mutex};
     s.done.wait(lock, [&] { return !s.finished.empty(); });
+  }
+}
+
+void TilePager::forget_pixels(NodeId tile) {
+  if (!state_->tiles[tile].mesh) return;
+  for (Texture& texture : state_->tiles[tile].mesh->textures) {
+    texture.encoded = nullptr;
+    texture.image = nullptr;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -50,14 +51,15 @@ std::size_t load_all(const TilePyramid& pyramid) {
 // A web server for a folder on the loopback interface, as long as it lives; it has no port where there is no Python.
 class Server {
  public:
-  Server(const fs::path& folder, const fs::path& log) {
+  // `certificate`, with its key in the same file, makes it https.
+  Server(const fs::path& folder, const fs::path& log, const fs::path& certificate = {})
+      : scheme_(certificate.empty() ? "http" : "https") {
     child_ = ::fork();
     if (child_ == 0) {
       if (std::freopen(log.c_str(), "w", stdout) == nullptr || std::freopen(log.c_str(), "a", stderr) == nullptr) {
         ::_exit(1);
       }
-      ::execlp("python3", "python3", "-u", "-m", "http.server", "0", "--bind", "127.0.0.1", "--directory",
-               folder.c_str(), nullptr);
+      ::execlp("python3", "python3", "-u", "-c", serve, folder.c_str(), certificate.c_str(), nullptr);
       ::_exit(127);
     }
     for (int wait = 0; wait < 400 && port_.empty(); ++wait) {
@@ -65,7 +67,7 @@ class Server {
       std::ifstream stream{log};
       const std::string text{std::istreambuf_iterator<char>{stream}, {}};
       const std::size_t at = text.find(" port ");
-      if (at != std::string::npos) port_ = text.substr(at + 6, text.find(' ', at + 6) - at - 6);
+      if (at != std::string::npos) port_ = text.substr(at + 6, text.find('\n', at + 6) - at - 6);
     }
   }
   Server(const Server&) = delete;
@@ -78,9 +80,21 @@ class Server {
     child_ = 0;
   }
   [[nodiscard]] bool runs() const { return !port_.empty(); }
-  [[nodiscard]] std::string address() const { return "http://127.0.0.1:" + port_; }
+  [[nodiscard]] std::string address() const { return scheme_ + "://127.0.0.1:" + port_; }
 
  private:
+  static constexpr const char* serve = R"(
+import functools, http.server, ssl, sys
+handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=sys.argv[1])
+server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+if sys.argv[2]:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(sys.argv[2])
+    server.socket = context.wrap_socket(server.socket, server_side=True)
+print("serving on port", server.server_port, flush=True)
+server.serve_forever()
+)";
+  std::string scheme_;
   pid_t child_ = 0;
   std::string port_;
 };
@@ -171,6 +185,35 @@ TEST_CASE("A tileset on the web is shown, and from its copies when the server is
   server.stop();
   CHECK(load_all(**pyramid) == count);
   CHECK(load_all(**plain) == 0);
+  CHECK(TilePyramid::open(address).error().code == ErrorCode::Unreadable);
+}
+
+TEST_CASE("A tileset is fetched over https from whom the certificates vouch for, and from nobody else") {
+  const fs::path folder = tiles("cache_https_source");
+  const fs::path place = scratch_folder("cache_https");
+  const std::string file = (place / "own.pem").string();
+  const std::string command =
+      "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=127.0.0.1 -addext subjectAltName=IP:127.0.0.1 "
+      "-keyout '" +
+      file + "' -out '" + file + ".crt' 2>/dev/null && cat '" + file + ".crt' >>'" + file + "'";
+  if (std::system(command.c_str()) != 0) {
+    WARN("SKIPPED: openssl makes no certificate");
+    return;
+  }
+  const Server server{folder, place / "log", file};
+  if (!server.runs()) {
+    WARN("SKIPPED: python3 does not serve");
+    return;
+  }
+  const fs::path address = server.address() + "/tileset.json";
+  const auto stranger = TilePyramid::open(address);
+  REQUIRE(!stranger);
+  CHECK(stranger.error().code == ErrorCode::Unreadable);
+  REQUIRE(::setenv("CURL_CA_BUNDLE", (file + ".crt").c_str(), 1) == 0);
+  const auto known = TilePyramid::open(address);
+  if (!known) FAIL(to_line(known.error()));
+  CHECK(load_all(**known) == (*known)->graph().nodes.size());
+  REQUIRE(::unsetenv("CURL_CA_BUNDLE") == 0);
   CHECK(TilePyramid::open(address).error().code == ErrorCode::Unreadable);
 }
 

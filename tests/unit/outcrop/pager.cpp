@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include <lodestone/metrics.h>
 #include <lodestone/tile_loader.h>
 #include <lodestone/tileset_writer.h>
 #include <catch2/catch.hpp>
@@ -11,6 +12,7 @@
 #include "base/rng.h"
 #include "data.h"
 #include "fixture.h"
+#include "viewer/headless/headless.h"
 
 namespace lodestone::test {
 namespace {
@@ -124,6 +126,45 @@ TEST_CASE(
     }
   }
   CHECK(exchanges > 20);
+}
+
+TEST_CASE("What the camera flies towards is there when it arrives, as far ahead as was asked") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  const double start = 40.0;
+  const double radii_per_s = 70.0;
+  std::uint32_t missing[2] = {};
+  for (const double look_ahead_s : {0.0, 0.5}) {
+    TilePager pager{*pyramid, {.look_ahead_s = look_ahead_s}};
+    double time_s = 0.0;
+    // On and on at the same speed, by steps so small that only workers get anywhere.
+    for (int frame = 0; frame < 2000; ++frame) {
+      constexpr double dt_s = 1e-6;
+      static_cast<void>(pager.update(from_south(**pyramid, start - radii_per_s * time_s), dt_s));
+      if (frame > 2 && pager.status().wanted_tiles == 0) break;
+      time_s += dt_s;
+      std::this_thread::sleep_for(std::chrono::milliseconds{2});
+    }
+    static_cast<void>(pager.update(from_south(**pyramid, start - radii_per_s * 0.49), 0.0));
+    missing[look_ahead_s > 0.0 ? 1 : 0] = pager.status().wanted_tiles;
+  }
+  CHECK(missing[0] > 0);
+  CHECK(missing[1] == 0);
+}
+
+TEST_CASE("Photographs on tiles are shown as they are, unless lamps are asked for") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  render::RenderOptions options{.width_px = 64, .height_px = 48, .supersample = 1};
+  std::vector<Image> pictures;
+  for (const auto lighting : {render::Lighting::Automatic, render::Lighting::Photograph, render::Lighting::Lamps}) {
+    options.look.lighting = lighting;
+    auto picture = render::render_tiles(*pyramid, options);
+    REQUIRE(picture);
+    pictures.push_back(std::move(picture->image));
+  }
+  CHECK(pictures[0].pixels == pictures[1].pixels);
+  CHECK(image_rms(pictures[0], pictures[2]) > 5.0);
 }
 
 TEST_CASE("What cannot be read is told, and what is coarser stands in") {

@@ -85,6 +85,21 @@ TEST_CASE("uv origin is the bottom-left corner of the image and row 0 its top") 
   CHECK((bottom_left.b > 150 && bottom_left.r < 60));
 }
 
+TEST_CASE("without lamps a texture shows its own colour, and colours that tell sizes stay lit") {
+  Mesh mesh = quad();
+  add_texture(mesh, Image{.width = 1, .height = 1, .channels = 3, .pixels = {200, 100, 50}});
+  render::RenderOptions options = from_south();
+  const auto lit = image_of(mesh, options);
+  options.look.lighting = render::Lighting::Photograph;
+  const Rgb plain = pixel(image_of(mesh, options), 0.5, 0.5);
+  CHECK((plain.r == Approx(200).margin(1) && plain.g == Approx(100).margin(1) && plain.b == Approx(50).margin(1)));
+  CHECK(std::abs(pixel(lit, 0.5, 0.5).r - 200.0) > 5.0);
+  options.look.coloring = render::Coloring::Lod;
+  const auto sizes = image_of(mesh, options);
+  options.look.lighting = render::Lighting::Lamps;
+  CHECK(sizes.pixels == image_of(mesh, options).pixels);
+}
+
 TEST_CASE("grey, grey-alpha, RGB and RGBA textures of the same grey look the same") {
   std::vector<Image> images;
   for (const std::uint32_t channels : {1U, 2U, 3U, 4U}) {
