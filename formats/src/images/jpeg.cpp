@@ -100,19 +100,30 @@ void shrink(int& width, int& height, std::uint32_t at_least) {
   }
 }
 
+struct Header {
+  int width = 0;
+  int height = 0;
+  int space = 0;  // of colours: TJCS
+};
+
+Result<Header> read_header(tjhandle handle, ByteSpan bytes) {
+  if (handle == nullptr) return Error{ErrorCode::Unreadable, "the JPEG decoder could not be started", {}};
+  Header header;
+  int subsampling = 0;
+  if (tjDecompressHeader3(handle, bytes.data(), static_cast<unsigned long>(bytes.size()), &header.width, &header.height,
+                          &subsampling, &header.space) != 0) {
+    return jpeg_error(handle, "the JPEG header is broken");
+  }
+  return header;
+}
+
 }  // namespace
 
 Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_t at_least) {
   const Handle handle{tjInitDecompress()};
-  if (!handle) return Error{ErrorCode::Unreadable, "the JPEG decoder could not be started", {}};
-  int width = 0;
-  int height = 0;
-  int subsampling = 0;
-  int space = 0;
-  const auto size = static_cast<unsigned long>(bytes.size());
-  if (tjDecompressHeader3(handle.get(), bytes.data(), size, &width, &height, &subsampling, &space) != 0) {
-    return jpeg_error(handle.get(), "the JPEG header is broken");
-  }
+  const auto header = read_header(handle.get(), bytes);
+  if (!header) return header.error();
+  auto [width, height, space] = *header;
   if (auto fits = check_image_size(width, height, max_pixels); !fits) return fits.error();
   if (at_least > 0) shrink(width, height, at_least);
   const bool cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
@@ -123,8 +134,8 @@ Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_
               {}};
   image.pixels.resize(static_cast<std::size_t>(width) * height * image.channels);
   // LIMITSCANS: a small file of very many progressive scans would take minutes.
-  if (tjDecompress2(handle.get(), bytes.data(), size, image.pixels.data(), width, 0, height, format,
-                    TJFLAG_LIMITSCANS) != 0) {
+  if (tjDecompress2(handle.get(), bytes.data(), static_cast<unsigned long>(bytes.size()), image.pixels.data(), width, 0,
+                    height, format, TJFLAG_LIMITSCANS) != 0) {
     const std::string_view what = tjGetErrorStr2(handle.get());
     const bool harmless = tjGetErrorCode(handle.get()) == TJERR_WARNING && what.find("extraneous") != what.npos;
     if (!harmless) return jpeg_error(handle.get(), "the JPEG data is damaged or cut off");
@@ -136,15 +147,9 @@ Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_
 
 Result<glm::uvec2> jpeg_size(ByteSpan bytes) {
   const Handle handle{tjInitDecompress()};
-  if (!handle) return Error{ErrorCode::Unreadable, "the JPEG decoder could not be started", {}};
-  int width = 0;
-  int height = 0;
-  int subsampling = 0;
-  int space = 0;
-  if (tjDecompressHeader3(handle.get(), bytes.data(), static_cast<unsigned long>(bytes.size()), &width, &height,
-                          &subsampling, &space) != 0) {
-    return jpeg_error(handle.get(), "the JPEG header is broken");
-  }
+  const auto header = read_header(handle.get(), bytes);
+  if (!header) return header.error();
+  const auto [width, height, space] = *header;
   const bool turned = read_markers(bytes).orientation >= 5;
   return turned ? glm::uvec2{height, width} : glm::uvec2{width, height};
 }
