@@ -50,16 +50,18 @@ struct Timings {
   std::vector<double> refine_s, coarsen_s, seek_s;
 };
 
-Status measure(Cursor& cursor, Level last, std::mt19937_64& random, const Context& context, Timings& timings) {
-  const Error cancelled{ErrorCode::Cancelled, "cancelled", ""};
+Status measure(Cursor& cursor, std::mt19937_64& random, const Context& context, const std::filesystem::path& file,
+               Timings& timings) {
+  const Level last = cursor.model().record_count();
+  const auto cancelled = [&] { return Error{ErrorCode::Cancelled, "cancelled", file.string()}; };
   for (std::size_t i = 0; i < timings.refine_s.size(); ++i) {
-    if (context.cancelled()) return cancelled;
+    if (context.cancelled()) return cancelled();
     timings.refine_s[i] = seconds_to(cursor, last);
     timings.coarsen_s[i] = seconds_to(cursor, 0);
   }
   const Level distance = std::max<Level>(1, last / 100);
   for (double& seek_s : timings.seek_s) {
-    if (context.cancelled()) return cancelled;
+    if (context.cancelled()) return cancelled();
     const Level from = static_cast<Level>(random() % (last + 1ULL));
     const bool down = from >= distance && (from + distance > last || (random() & 1U) != 0);
     cursor.jump(from);
@@ -79,7 +81,7 @@ Status Play::run(Session& session) {
   Timings timings{std::vector<double>(sweeps_), std::vector<double>(sweeps_), std::vector<double>(seeks_)};
 
   const std::uint64_t allocations_before = allocation_count();
-  Status measured = measure(cursor, last, random, session.context(), timings);
+  Status measured = measure(cursor, random, session.context(), model_, timings);
   const std::uint64_t allocations = allocation_count() - allocations_before;
   if (!measured) return measured;
 

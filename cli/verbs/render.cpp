@@ -29,7 +29,7 @@ class Render final : public Verb {
   [[nodiscard]] Result<render::Picture> draw_tiles(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_clusters(const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
-                                                   const render::RenderOptions& options) const;
+                                                   const render::RenderOptions& options, const Context& context) const;
 
   MeshInput input_;
   std::filesystem::path output_;
@@ -72,11 +72,11 @@ void Render::declare(Arguments& arguments) {
 }
 
 Result<render::Picture> Render::draw_sheet(const std::shared_ptr<const ProgressiveModel>& model,
-                                           const render::RenderOptions& options) const {
+                                           const render::RenderOptions& options, const Context& context) const {
   if (level_.ways() > 0) return Error{ErrorCode::BadArgument, "--sheet shows many levels, do not name one", ""};
   const auto start = std::chrono::steady_clock::now();
-  auto sheet = render::picture_sheet(model, {.levels = sheet_levels_, .render = options});
-  if (!sheet) return sheet.error();
+  auto sheet = render::picture_sheet(model, {.levels = sheet_levels_, .render = options}, context);
+  if (!sheet) return Error{sheet.error().code, sheet.error().message, input_.file().string()};
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return render::Picture{std::move(*sheet), model->face_slot_count(), seconds / sheet_levels_};
 }
@@ -85,7 +85,7 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
   auto model = read_model(input_.file(), {}, session.context());
   session.keep(model);
   if (!model) return model.error();
-  if (sheet_levels_ > 0) return draw_sheet(*model, options);
+  if (sheet_levels_ > 0) return draw_sheet(*model, options, session.context());
   if (level_.ways() == 0) return render::render_level(*model, (*model)->record_count(), options);
   const auto level = level_.in(**model, plan_);
   if (!level) return level.error();

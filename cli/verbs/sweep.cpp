@@ -128,7 +128,11 @@ Status Sweep::run(Session& session) {
   }
   auto swept = render::sweep(*model, *options, session.context());
   session.keep(swept);
-  if (!swept) return swept.error();
+  if (!swept) {
+    Error error = swept.error();
+    if (error.where.empty()) error.where = model_.string();
+    return error;
+  }
   Report& report = session.report();
   report.set("style", style_);
   report.set("frames", swept->frames);

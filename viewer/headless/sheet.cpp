@@ -42,7 +42,8 @@ void paste(Image& sheet, const Image& picture, std::uint32_t x_px, std::uint32_t
 
 }  // namespace
 
-Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const SheetOptions& options) {
+Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const SheetOptions& options,
+                            const Context& context) {
   const RenderOptions& render = options.render;
   if (options.levels == 0 || options.levels > 100 || options.columns == 0 || !(options.coarsest_ratio > 0.0) ||
       options.coarsest_ratio > 1.0) {
@@ -72,6 +73,8 @@ Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const
   const double base_ratio = static_cast<double>(model->info(0).triangles) / std::max(1U, finest);
   const double end_ratio = std::max({options.coarsest_ratio, base_ratio, 1e-9});
   for (std::uint32_t i = 0; i < options.levels; ++i) {
+    if (context.cancelled()) return Error{ErrorCode::Cancelled, "cancelled", ""};
+    context.report("pictures", double(i) / options.levels);
     const double ratio = options.levels == 1 ? 1.0 : std::pow(end_ratio, double(i) / (options.levels - 1));
     const Level level = model->level_of_triangles(static_cast<std::uint32_t>(std::lround(ratio * finest)));
     cursor.jump(level);

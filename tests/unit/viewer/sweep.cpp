@@ -164,6 +164,10 @@ TEST_CASE("a picture sheet has one captioned cell per level") {
   CHECK(dark_below(0, 0) > 100);
   CHECK(dark_below(1, 1) > 100);
   CHECK(dark_below(2, 1) == 0);  // no sixth level
+  const std::atomic<bool> stop{true};
+  Context context;
+  context.cancel = &stop;
+  CHECK(picture_sheet(model, options, context).error().code == ErrorCode::Cancelled);
 }
 
 TEST_CASE("a morphing sweep of a generated house and outcrop pops far less than hard and discrete ones") {
