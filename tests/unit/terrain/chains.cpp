@@ -2,6 +2,7 @@
 #include "terrain/chains.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "heights.h"
@@ -27,25 +28,32 @@ double rough_m(std::int64_t index) {
   return height_m;
 }
 
-std::vector<int> chain_at(std::int64_t first, std::int64_t stride, double tolerance_m) {
-  const TileLattice lattice = lattice_of([&](int x, int) { return rough_m(first + stride * (x + 1)); });
+std::vector<int> chain_at(std::int64_t first, std::int64_t stride, double tolerance_m, double scale = 1.0) {
+  std::array<double, size + 3> line_m{};
+  for (int x = -1; x <= size + 1; ++x)
+    line_m[static_cast<std::size_t>(x + 1)] = scale * rough_m(first + stride * (x + 1));
+  const TileLattice lattice = lattice_of([&](int x, int) { return line_m[static_cast<std::size_t>(x + 1)]; });
   return border_chain(lattice, Side::South, {tolerance_m, 0.25, 1});
 }
 
 }  // namespace
 
-TEST_CASE("the chain of a zoom contains the chain of the zoom above") {
+TEST_CASE("the chain of a zoom contains the chain of the zoom above, on cliffs as well") {
   const double tolerance_m = GENERATE(2.0, 20.0, 100.0);
   const double finer_m = GENERATE(1.0, 0.5) * tolerance_m;
-  const std::vector<int> coarse = chain_at(1000, 2, tolerance_m);
-  // Post t of the coarse line is post 2 t of the two fine ones together.
-  const std::vector<int> first = chain_at(1001, 1, finer_m), second = chain_at(1257, 1, finer_m);
-  for (const int t : coarse) {
-    const std::vector<int>& fine = t <= size / 2 ? first : second;
-    const int post = t <= size / 2 ? 2 * t : 2 * t - size;
-    CHECK(std::binary_search(fine.begin(), fine.end(), post));
+  const double scale = GENERATE(1.0, 8.0);
+  for (std::int64_t start = 0; start < 60000; start += 4001) {
+    const std::vector<int> coarse = chain_at(start, 2, tolerance_m, scale);
+    // Post t of the coarse line is post 2 t of the two fine ones together.
+    const std::vector<int> first = chain_at(start + 1, 1, finer_m, scale),
+                           second = chain_at(start + 257, 1, finer_m, scale);
+    const bool nested = std::all_of(coarse.begin(), coarse.end(), [&](int t) {
+      const std::vector<int>& fine = t <= size / 2 ? first : second;
+      return std::binary_search(fine.begin(), fine.end(), t <= size / 2 ? 2 * t : 2 * t - size);
+    });
+    CHECK(nested);
+    CHECK(coarse.size() > 2);
   }
-  CHECK(coarse.size() > 2);
 }
 
 TEST_CASE("both tiles of a border compute the same chain, beside voids as well") {
