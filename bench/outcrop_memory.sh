@@ -3,21 +3,23 @@
 # Memory of an outcrop whose textures would take 10 GB decoded: 200 images of 4096 x 4096 pixels (four photographs under
 # 200 names), built under --max-memory 512MB on one thread and on eight, and with a quarter of the images. Prints what
 # the program says of its peak. Needs ImageMagick and 4 GB.
-# outcrop_memory.sh FOLDER [BUILD_FOLDER] [TRIANGLES] [LIMIT]
+# outcrop_memory.sh FOLDER [BUILD_FOLDER] [TRIANGLES] [LIMIT] [SIZE_PX] ["IMAGES ..."]
 set -euo pipefail
 work=$1
 lodestone=$(realpath "${2:-build/release}/cli/lodestone")
 triangles=${3:-300000}
 limit=${4:-512MB}
+size=${5:-4096}
+counts=${6:-200 50}
 mkdir -p "$work"
 cd "$work"
 if [ ! -e photo_3.jpg ]; then
-  "$lodestone" generate outcrop -o photo.obj --triangles 2000 --textures 4 --texture-size 4096 --seed 1 --quiet >/dev/null
+  "$lodestone" generate outcrop -o photo.obj --triangles 2000 --textures 4 --texture-size "$size" --seed 1 --quiet >/dev/null
   i=0
   for png in photo_textures/*.png; do convert "$png" -quality 92 "photo_$i.jpg"; i=$((i + 1)); done
   rm -r photo_textures
 fi
-for images in 200 50; do
+for images in $counts; do
   name=outcrop_$images
   "$lodestone" generate outcrop -o "$name.obj" --triangles "$triangles" --textures $images --texture-size 64 --seed 1 --quiet >/dev/null
   sed -i 's/\.png/.jpg/' "$name.mtl"

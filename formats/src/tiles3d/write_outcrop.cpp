@@ -121,6 +121,7 @@ class OutcropWriter {
   void leave_no_trace() const;
   void sort_tiles();
   [[nodiscard]] unsigned photographs_at_once() const;
+  [[nodiscard]] std::vector<std::uint32_t> largest_first() const;
   [[nodiscard]] Status write_photograph(std::uint32_t segment, unsigned workers);
   [[nodiscard]] Status write_joined(std::uint32_t tile);
   [[nodiscard]] Status write_tile(std::uint32_t tile, std::span<const SegmentImages* const> images);
@@ -421,6 +422,18 @@ unsigned OutcropWriter::photographs_at_once() const {
   return workers;
 }
 
+// Segments with an image, so that no large one is left for the end, when other workers have nothing to do.
+std::vector<std::uint32_t> OutcropWriter::largest_first() const {
+  const auto& segments = pyramid_->segments();
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t s = 0; s < segments.size(); ++s) {
+    if (segments[s].texture != none) order.push_back(s);
+  }
+  const auto pixels = [&](std::uint32_t s) { return std::uint64_t{segments[s].width_px} * segments[s].height_px; };
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return pixels(a) > pixels(b); });
+  return order;
+}
+
 // Photographs can wait for each other, triangles cannot.
 void OutcropWriter::warn_of_memory(std::uint32_t vertices) {
   constexpr double bytes_of_vertex = 500.0;  // while the levels are made
@@ -470,10 +483,9 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   sort_tiles();
   const unsigned at_once = photographs_at_once();
   const unsigned inner = std::max(1U, workers_of(context_) / at_once);
-  Status status = run_jobs(pyramid_->segments().size(), at_once, context_, [&](std::size_t s) -> Status {
-    if (pyramid_->segments()[s].texture == none) return Done{};
-    return write_photograph(static_cast<std::uint32_t>(s), inner);
-  });
+  const std::vector<std::uint32_t> order = largest_first();
+  Status status =
+      run_jobs(order.size(), at_once, context_, [&](std::size_t i) { return write_photograph(order[i], inner); });
   if (!status) return status.error();
   status =
       run_jobs(joined_.size(), workers_of(context_), context_, [&](std::size_t i) { return write_joined(joined_[i]); });
