@@ -75,6 +75,7 @@ class Engine {
   std::uint32_t flush();
   std::uint32_t hand_over(const PassLog& log, std::size_t begin, std::size_t end);
   bool prune(double limit_m);
+  [[nodiscard]] bool parts_are_due() const;
   bool relax();
   bool prune_anew();
   [[nodiscard]] CollapseReport report() const;
@@ -95,8 +96,9 @@ class Engine {
   std::uint32_t log_count_ = 0;  // passes and searches for parts
   double diagonal_m_ = 0.0;
   double line_weight_ = line_weight;
-  double error_m_ = 0.0;      // largest so far
-  double pruned_to_m_ = 0.0;  // limit of the last search for parts that may go
+  double error_m_ = 0.0;       // largest so far
+  double pruned_to_m_ = -1.0;  // limit of the last search for parts that may go
+  bool parts_wait_ = false;    // for what they lean upon to be settled
   bool loose_ = false;
   bool last_resort_ = false;
   bool looks_matter_ = false;
@@ -269,13 +271,22 @@ bool Engine::relax() {
   return !std::exchange(scruple, true);
 }
 
+// Whether a search for parts that may go would find others than the last one.
+bool Engine::parts_are_due() const {
+  const double limit_m = prune_share * error_m_;
+  if (mesh_.point_count() >= region_points) return limit_m >= prune_growth * pruned_to_m_;
+  return limit_m > pruned_to_m_ || parts_wait_;
+}
+
 bool Engine::prune(double limit_m) {
   if (done()) return false;
   PassLog log;
   log.pass = ++log_count_;
   limit_m = std::min(limit_m, options_.max_error_m);
   pruned_to_m_ = limit_m;
-  error_m_ = std::max(error_m_, double{prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, log)});
+  const Pruned pruned = prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, context_, log);
+  error_m_ = std::max(error_m_, double{pruned.largest_m});
+  parts_wait_ = pruned.some_wait;
   hand_over(log, 0, log.size());
   return log.size() != 0;
 }
@@ -316,8 +327,7 @@ CollapseReport Engine::run() {
   while (!done()) {
     const std::uint32_t before = faces_left_;
     const bool any = pass(share);
-    const double growth = mesh_.point_count() < region_points ? 1.0 : prune_growth;
-    if (prune_share * error_m_ >= growth * pruned_to_m_) prune(prune_share * error_m_);
+    if (parts_are_due()) prune(prune_share * error_m_);
     context_.report("collapse", 1.0 - faces_left_ / total);
     if (!any && share >= 1.0 && !relax() && !prune_anew()) break;
     const double wanted = 0.5 * quota() * before;

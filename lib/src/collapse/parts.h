@@ -8,7 +8,11 @@
 namespace lodestone::collapse {
 
 // Logs the parts of few faces that lie, with all they stood for, within `limit_m` of what stays, nearest first, and
-// takes them out of `mesh`. Stops once `most_faces` faces went. Returns the largest error logged.
-float prune_parts(WorkingMesh& mesh, double limit_m, std::uint32_t most_faces, PassLog& log);
+// takes them out of `mesh`. Stops once `most_faces` faces went.
+struct Pruned {
+  float largest_m = 0.0F;  // error logged
+  bool some_wait = false;  // because of what went: the same search would find more
+};
+Pruned prune_parts(WorkingMesh& mesh, double limit_m, std::uint32_t most_faces, const Context& context, PassLog& log);
 
 }  // namespace lodestone::collapse
