@@ -401,7 +401,8 @@ Status OutcropWriter::write_joined(std::uint32_t tile) {
   return write_tile(tile, pointers);
 }
 
-// As many as memory allows: pixels, a third of them while shrinking, the file, and which pixels are used.
+// As many as memory allows: pixels, a third of them while shrinking, the file, which pixels are used, and a tile's
+// texture plain and packed.
 unsigned OutcropWriter::photographs_at_once() const {
   double largest = 1.0;
   std::size_t count = 0;
@@ -409,8 +410,10 @@ unsigned OutcropWriter::photographs_at_once() const {
     if (segment.texture == none) continue;
     const TextureInfo& info = infos_[segment.texture];
     constexpr double per_pixel = 3.0 * 1.4 + 0.2;
+    constexpr double per_tile_byte = 12.0;
     const double pixels = static_cast<double>(info.width_px) * info.height_px;
-    largest = std::max(largest, pixels * per_pixel + static_cast<double>(info.file_bytes));
+    largest = std::max(largest, pixels * per_pixel + static_cast<double>(info.file_bytes) +
+                                    per_tile_byte * static_cast<double>(pyramid_->tile_bytes()));
     ++count;
   }
   auto workers = static_cast<unsigned>(std::min<std::size_t>(workers_of(context_), std::max<std::size_t>(count, 1)));

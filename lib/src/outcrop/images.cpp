@@ -45,11 +45,29 @@ void cover(const glm::dvec2 (&p)[3], std::uint32_t width, std::uint32_t height, 
   }
 }
 
+// A part that lies inside, in the memory of the whole.
+Image crop(Image image, std::uint32_t left, std::uint32_t top, std::uint32_t width, std::uint32_t height) {
+  const std::size_t row_bytes = static_cast<std::size_t>(width) * image.channels;
+  for (std::uint32_t y = 0; y < height; ++y) {  // rows move towards the front only
+    std::memmove(&image.pixels[y * row_bytes], image.at(left, top + y), row_bytes);
+  }
+  image.width = width;
+  image.height = height;
+  image.pixels.resize(height * row_bytes);
+  return image;
+}
+
 // The used part of a photograph, which repeats beyond its borders.
 Image used_part(const OutcropSegment& segment, Image photograph) {
   if (segment.left_px == 0 && segment.top_px == 0 && segment.width_px == photograph.width &&
       segment.height_px == photograph.height) {
     return photograph;
+  }
+  if (segment.left_px >= 0 && segment.top_px >= 0 && segment.left_px + segment.width_px <= photograph.width &&
+      segment.top_px + segment.height_px <= photograph.height) {
+    const auto left = static_cast<std::uint32_t>(segment.left_px);
+    return crop(std::move(photograph), left, static_cast<std::uint32_t>(segment.top_px), segment.width_px,
+                segment.height_px);
   }
   Image out{segment.width_px, segment.height_px, photograph.channels, {}};
   out.pixels.resize(static_cast<std::size_t>(out.width) * out.height * out.channels);
