@@ -125,7 +125,7 @@ struct SheetOptions {
   double coarsest_ratio = 0.01;
   RenderOptions render{.width_px = 480, .height_px = 360};
 };
-[[nodiscard]] Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const SheetOptions& options,
-                                          const Context& context = {});
+[[nodiscard]] Result<Image> picture_sheet(const std::shared_ptr<const ProgressiveModel>& model,
+                                          const SheetOptions& options, const Context& context = {});
 
 }  // namespace lodestone::render

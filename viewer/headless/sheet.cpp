@@ -42,7 +42,7 @@ void paste(Image& sheet, const Image& picture, std::uint32_t x_px, std::uint32_t
 
 }  // namespace
 
-Result<Image> picture_sheet(std::shared_ptr<const ProgressiveModel> model, const SheetOptions& options,
+Result<Image> picture_sheet(const std::shared_ptr<const ProgressiveModel>& model, const SheetOptions& options,
                             const Context& context) {
   const RenderOptions& render = options.render;
   if (options.levels == 0 || options.levels > 100 || options.columns == 0 || !(options.coarsest_ratio > 0.0) ||
