@@ -10,6 +10,7 @@
 #include <optional>
 #include <queue>
 #include <set>
+#include <span>
 
 #include <lodestone/repair.h>
 
@@ -88,7 +89,7 @@ class Builder {
            : kind == OpeningJob::Kind::Flatten ? report_.openings_flattened
                                                : report_.openings_filled;
   }
-  void offer_around(std::uint32_t point);
+  void offer_around(std::span<const std::uint32_t> points);
   bool offer_later();
   [[nodiscard]] bool cuts_through();
   [[nodiscard]] bool takes_of_the_block(const Move& move) const;
@@ -159,10 +160,12 @@ void Builder::offer(std::uint32_t point) {
   if (best.onto != none) queue_.push(best);
 }
 
-void Builder::offer_around(std::uint32_t point) {
-  std::vector<std::uint32_t> around{point};
-  for (const FaceId f : mesh_.faces_of[point])
-    around.insert(around.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+void Builder::offer_around(std::span<const std::uint32_t> points) {
+  std::vector<std::uint32_t> around{points.begin(), points.end()};
+  for (const std::uint32_t point : points) {
+    for (const FaceId f : mesh_.faces_of[point])
+      around.insert(around.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+  }
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (const std::uint32_t p : around) {
@@ -218,7 +221,7 @@ void Builder::slide_points(double price) {
     }
     apply(mesh_, moved_, v.error_m, log_);
     ++(v.tilts ? report_.tilting_collapses : report_.points_merged);
-    offer_around(e.onto);
+    offer_around({&e.onto, 1});
   }
 }
 
@@ -302,7 +305,9 @@ bool Builder::shift_planes(double price) {
     apply(mesh_, moved_, v.error_m, log_);
     ++report_.shifts;
     any = true;
-    for (const Move& m : plan.moves) offer_around(m.onto == none ? m.point : m.onto);
+    std::vector<std::uint32_t> ends;
+    for (const Move& m : plan.moves) ends.push_back(m.onto == none ? m.point : m.onto);
+    offer_around(ends);
   }
   return any;
 }

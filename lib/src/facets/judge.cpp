@@ -12,14 +12,21 @@ namespace {
 constexpr double sliver_m = 5e-4;        // a flatter face has no direction worth keeping
 constexpr double tilt_sine = 0.0075;     // 0.43 degrees are no tilt
 constexpr double detail_area_m2 = 0.25;  // planes smaller than this may tilt at a low price
-constexpr double detail_arm_m = 0.17;    // a tilt counts like so much distance times its sine
+constexpr double detail_arm_m = 0.19;    // a tilt counts like so much distance times its sine
 constexpr double plane_arm_m = 9.0;
+constexpr double linear_sine = 0.12;    // up to there the cost grows with the sine, beyond with its square
 constexpr double outline_weight = 0.2;  // of a material's outline, beside that of a hole
 constexpr double growth_weight = 3.0;   // where a hole or the rarer material grows: windows shrink, walls do not
 constexpr double side_weight = 0.8;     // of a face that shrinks to nothing: its mean squared way over the largest
 constexpr double drift_weight = 3.0;
 constexpr double flip_cosine = 0.2;
 constexpr double one_side_cosine = 0.95;
+
+// Per area. Small tilts of large planes count more than by their square: they are seen in the light on a wall.
+double tilt_cost(double sine, bool detail) {
+  if (detail) return sine * sine * detail_arm_m * detail_arm_m;
+  return sine * std::max(sine, linear_sine) * plane_arm_m * plane_arm_m;
+}
 
 // Adds what happens to one face that keeps three corners; false if it must not.
 bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Verdict& verdict) {
@@ -49,8 +56,7 @@ bool judge_face(const FacetMesh& mesh, const Moved& moved, const Face& face, Ver
   if (sine > tilt_sine && height > sliver_m) {
     verdict.tilts = true;
     const bool detail = mesh.surfaces.surfaces[face.surface].area_m2 < detail_area_m2;
-    const double arm = sine * (detail ? detail_arm_m : plane_arm_m);
-    verdict.cost += 0.5 * length * arm * arm;
+    verdict.cost += 0.5 * length * tilt_cost(sine, detail);
   }
   return true;
 }
@@ -181,8 +187,7 @@ bool SlideJudge::judge_face(SlidingFace& s, const glm::dvec3& to, double deviati
   const double sine2 = glm::dot(across, across) / (length * length);
   if (sine2 > tilt_sine * tilt_sine) {
     verdict.tilts = true;
-    const double arm = s.detail ? detail_arm_m : plane_arm_m;
-    verdict.cost += 0.5 * length * sine2 * arm * arm;
+    verdict.cost += 0.5 * length * tilt_cost(std::sqrt(sine2), s.detail);
   }
   return true;
 }

@@ -57,7 +57,7 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
     }
   }
   REQUIRE(rich == 30);
-  constexpr std::array<double, 5> most_deg{0.02, 0.05, 0.06, 0.15, 0.85};
+  constexpr std::array<double, 5> most_deg{0.02, 0.04, 0.06, 0.13, 0.8};
   constexpr std::array<double, 5> most_ppm{120.0, 270.0, 490.0, 1180.0, 3400.0};
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     CAPTURE(ratios[i]);
