@@ -10,7 +10,10 @@ TileScene::TileScene(const Gl& gl, std::shared_ptr<const TilePyramid> pyramid, c
 
 void TileScene::update(const View& view, double dt_s) { show(pager_.update(view, dt_s)); }
 
-void TileScene::settle(const View& view) { show(pager_.settle(view)); }
+// Not by the pager's settle(): what is uploaded on the way lets go of its pixels.
+void TileScene::settle(const View& view) {
+  for (update(view, 0.0); pager_.status().wanted_tiles > 0; update(view, 0.0)) pager_.wait();
+}
 
 void TileScene::show(std::span<const NodeId> drawn) {
   // What the pager has let go of must not be referred to any more.

@@ -117,6 +117,10 @@ class TilePager {
   /// The same, but waits until all that this view needs is there (or has failed), and for no exchange.
   [[nodiscard]] std::span<const NodeId> settle(const View& view);
 
+  /// Waits until one more of the tiles that the last update() asked for has been read or has failed; not at all where
+  /// none is on its way. settle() is update() and wait() by turns.
+  void wait();
+
   /// How much of a tile that update() has returned is shown: 1 = all of it. In (0, 1) it comes: pixels whose noise (any
   /// fixed pattern in 0..1) is below the share show it. In (-1, 0) it leaves: the pixels whose noise is not below 1 +
   /// share. So those that come and those that leave fill every pixel once.

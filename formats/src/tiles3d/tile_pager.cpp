@@ -234,13 +234,18 @@ std::span<const NodeId> TilePager::update(const View& view, double dt_s) {
   return s.drawn;
 }
 
-std::span<const NodeId> TilePager::settle(const View& view) {
+void TilePager::wait() {
   State& s = *state_;
+  if (s.status.wanted_tiles == 0) return;
+  std::unique_lock lock{s.mutex};
+  s.done.wait(lock, [&] { return !s.finished.empty(); });
+}
+
+std::span<const NodeId> TilePager::settle(const View& view) {
   while (true) {
     const std::span<const NodeId> drawn = update(view, 0.0);
-    if (s.status.wanted_tiles == 0) return drawn;
-    std::unique_lock lock{s.mutex};
-    s.done.wait(lock, [&] { return !s.finished.empty(); });
+    if (state_->status.wanted_tiles == 0) return drawn;
+    wait();
   }
 }
 
