@@ -322,6 +322,14 @@ TEST_CASE("a pyramid on disk is the same for any number of workers, and is resum
   CHECK(resumed->kept_tiles < resumed->tiles);
   CHECK((tree(folder / "eight") == expected));
 
+  // Cut within the last number of the first tile's line, which then reads as another number.
+  const std::string& manifest = expected.at("lodestone-terrain.txt");
+  fs::remove(folder / "eight" / "lodestone-terrain.txt");
+  std::ofstream{folder / "eight" / "lodestone-terrain.unfinished"}
+      << manifest.substr(0, manifest.find('\n', manifest.find('\n') + 1) - 5);
+  REQUIRE(write_terrain(*pyramid, folder / "eight", {.resume = true}).ok());
+  CHECK((tree(folder / "eight") == expected));
+
   const auto other = TerrainPyramid::plan(source, {.max_error_m = {41.0}});
   CHECK(write_terrain(*other, folder / "eight", {.resume = true}).error().code == ErrorCode::BadArgument);
   std::ofstream{folder / "mine.txt"} << "not terrain";
