@@ -14,6 +14,7 @@
 #include <lodestone/edge_collapse.h>
 #include <lodestone/facet_shift.h>
 #include <lodestone/formats.h>
+#include <lodestone/texture_colors.h>
 
 #include "picture_grid.h"
 #include "viewer/headless/headless.h"
@@ -89,7 +90,8 @@ int main(int argc, char** argv) {
     const auto loaded = read_mesh(file);
     if (!loaded) continue;
     const Mesh& source = loaded->mesh;
-    std::vector<Levels> methods{build(source, [](const Mesh& m) { return build_by_facet_shift(m); })};
+    std::vector<Levels> methods{build(
+        source, [](const Mesh& m) { return build_by_facet_shift(m, {.texture_colors = mean_texture_colors(m)}); })};
     if (!alone) methods.push_back(build(source, [](const Mesh& m) { return build_by_edge_collapse(m); }));
     const std::string stem = std::filesystem::path{file}.stem().string();
     std::printf("%s\n{\"name\": \"%s\", \"triangles\": %u", count++ == 0 ? "" : ",", stem.c_str(),

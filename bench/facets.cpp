@@ -11,6 +11,7 @@
 #include <lodestone/facet_shift.h>
 #include <lodestone/formats.h>
 #include <lodestone/metrics.h>
+#include <lodestone/texture_colors.h>
 
 namespace {
 
@@ -79,7 +80,8 @@ int main(int argc, char** argv) {
     const Mesh& source = loaded->mesh;
     std::printf("%s{\"file\": \"%s\", \"triangles\": %u,\n ", count == 0 ? "" : ",\n", argv[i],
                 source.triangle_count());
-    bench("facet_shift", source, facet_sums, [](const Mesh& m) { return build_by_facet_shift(m); });
+    bench("facet_shift", source, facet_sums,
+          [](const Mesh& m) { return build_by_facet_shift(m, {.texture_colors = mean_texture_colors(m)}); });
     if (!alone) {
       std::printf(",\n ");
       bench("edge_collapse", source, edge_sums, [](const Mesh& m) { return build_by_edge_collapse(m); });

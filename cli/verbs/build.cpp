@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include <lodestone/texture_colors.h>
+
 #include "facet_report.h"
 #include "mesh_input.h"
 #include "verbs.h"
@@ -20,7 +22,7 @@ class Build final : public Verb {
 
  private:
   [[nodiscard]] EdgeCollapseOptions options() const;
-  [[nodiscard]] FacetShiftOptions shift_options() const;
+  [[nodiscard]] FacetShiftOptions shift_options(const Mesh& source) const;
   [[nodiscard]] Result<std::shared_ptr<const ProgressiveModel>> build(const Mesh& source, Session& session) const;
 
   MeshInput input_;
@@ -71,8 +73,10 @@ EdgeCollapseOptions Build::options() const {
   return options;
 }
 
-FacetShiftOptions Build::shift_options() const {
-  FacetShiftOptions options{.tolerance = tolerance_.value(), .target_triangles = target_triangles_};
+FacetShiftOptions Build::shift_options(const Mesh& source) const {
+  FacetShiftOptions options{.tolerance = tolerance_.value(),
+                            .texture_colors = mean_texture_colors(source),
+                            .target_triangles = target_triangles_};
   if (weld_m_) options.weld_tolerance_m = *weld_m_;
   if (interior_ == "drop-first") options.interior = Interior::DropFirst;
   if (order_ == "together") options.order = ShiftOrder::Together;
@@ -91,7 +95,7 @@ Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source,
     return built->model;
   };
   if (method_ == "facet-shift") {
-    auto built = build_by_facet_shift(source, shift_options(), session.context());
+    auto built = build_by_facet_shift(source, shift_options(source), session.context());
     if (built) report_shifts(built->report, session.report());
     return keep(built, [&] { return built->report.sentence; });
   }
@@ -99,8 +103,8 @@ Result<std::shared_ptr<const ProgressiveModel>> Build::build(const Mesh& source,
     auto built = build_by_edge_collapse(source, options(), session.context());
     return keep(built, [&] { return built->report.sentence; });
   }
-  auto built =
-      build_automatically(source, {.facet_shift = shift_options(), .edge_collapse = options()}, session.context());
+  auto built = build_automatically(source, {.facet_shift = shift_options(source), .edge_collapse = options()},
+                                   session.context());
   if (built) {
     session.remark("method: " + built->reason);
     if (built->facet_shift) report_shifts(*built->facet_shift, session.report());

@@ -121,6 +121,9 @@ struct FacetShiftOptions {
   double t_junction_tolerance_m = 0.001;
   Interior interior = Interior::Keep;
   ShiftOrder order = ShiftOrder::OneByOne;
+  /// Per texture its mean colour (sRGB, 0..1), by which builders tell how different two materials look; see
+  /// mean_texture_colors() of texture_colors.h. Empty: those with pixels are looked at, others count as grey.
+  std::vector<glm::vec3> texture_colors{};
   /// Stop at so many triangles; 0 goes on until nothing is left to do.
   std::uint32_t target_triangles = 0;
   /// Stop before the error exceeds this; metres.

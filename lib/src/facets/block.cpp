@@ -141,7 +141,7 @@ bool Block::needs(const FacetMesh& mesh, std::span<const FaceId> faces) const no
                                      [&](FaceId f) { return fabric.has[mesh.source->face_material(f)] != 0; });
     return going > 0 && fabric.left(mesh) < fabric.least_faces + static_cast<std::uint32_t>(going);
   };
-  return exists() && (lacks(walls_) || lacks(roofs_));
+  return exists() && (mesh.live_faces <= face_count() + faces.size() || lacks(walls_) || lacks(roofs_));
 }
 
 void Block::measure(const Mesh& source) {

@@ -22,7 +22,7 @@ class Block {
 
   // Whether it is time: with fewer faces, or fewer that look like walls or roofs, it could not be made any more.
   [[nodiscard]] bool must_come(const FacetMesh& mesh) const noexcept;
-  // Whether these faces are among the last that it needs for its looks.
+  // Whether these faces are among the last that it needs, of all or for its looks.
   [[nodiscard]] bool needs(const FacetMesh& mesh, std::span<const FaceId> faces) const noexcept;
 
   // All faces that are left become the prism, in one record. False, and nothing happens, if they or their vertices are

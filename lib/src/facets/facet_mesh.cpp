@@ -282,7 +282,7 @@ void Moved::set(std::span<const Move> moves) {
 FacetMesh make_facet_mesh(const Mesh& source, const FacetShiftOptions& options, std::vector<FaceId>& degenerate) {
   FacetMesh mesh;
   mesh.source = &source;
-  mesh.looks = Looks{source};
+  mesh.looks = Looks{source, options.texture_colors};
   // What counts as one point is seen on a copy: the finest level is the source as it is.
   Mesh copy;
   if (options.weld_tolerance_m > 0.0) {

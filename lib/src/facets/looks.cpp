@@ -34,9 +34,9 @@ glm::dvec3 mean_texel(const Texture& texture) {
 
 }  // namespace
 
-Looks::Looks(const Surroundings& source) {
-  std::vector<glm::dvec3> texels;
-  for (const Texture& texture : source.textures) texels.push_back(mean_texel(texture));
+Looks::Looks(const Surroundings& source, const std::vector<glm::vec3>& texture_colors) {
+  std::vector<glm::dvec3> texels{texture_colors.begin(), texture_colors.end()};
+  for (std::size_t i = texels.size(); i < source.textures.size(); ++i) texels.push_back(mean_texel(source.textures[i]));
   for (const Material& material : source.materials) {
     const glm::dvec4 base{material.base_color};
     glm::dvec3 color{base};

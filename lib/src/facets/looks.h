@@ -11,7 +11,8 @@ namespace lodestone::facets {
 class Looks {
  public:
   Looks() = default;
-  explicit Looks(const Surroundings& source);
+  // `texture_colors`: sRGB, may be empty.
+  Looks(const Surroundings& source, const std::vector<glm::vec3>& texture_colors);
 
   // Mean squared difference of the colours, 0..1.
   [[nodiscard]] double contrast(MaterialId a, MaterialId b) const noexcept;

@@ -17,12 +17,12 @@ namespace lodestone::facets {
 namespace {
 
 constexpr double facing_cosine = 0.9;
-constexpr double plane_m = 0.003;
+constexpr double plane_m = 0.012;  // planes of surveyed walls differ by millimetres
 constexpr std::size_t most_corners = 64;
 constexpr double most_depth_m = 1.5;   // behind the wall
 constexpr double most_height_m = 0.4;  // before it
 constexpr double margin_m = 0.1;       // frames may reach so far under the wall
-constexpr double covered = 0.6;        // of the hole, at least: what went before counts as open only if it was much
+constexpr double covered = 0.6;        // of the hole: where less is, one saw through it, and that has a price
 constexpr double look_ahead = 16.0;    // times the price
 constexpr double side_cosine = 0.1;    // what goes straight back from the outline
 constexpr double least_depth_m = 0.02;
@@ -84,6 +84,9 @@ double most_deviation(const FacetMesh& mesh, const std::vector<FaceId>& faces) {
   }
   return most;
 }
+
+// As wide as a square of its area and outline.
+double size_of(const Opening& opening) { return 2.0 * opening.area_m2 / opening.perimeter_m; }
 
 bool contains(const std::vector<FaceId>& sorted, FaceId f) {
   return std::binary_search(sorted.begin(), sorted.end(), f);
@@ -298,8 +301,16 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
       }
     }
   }
-  if (std::max(front, back) < covered * opening.area_m2 || is_sewn(mesh_, opening, content)) return std::nullopt;
+  if (is_sewn(mesh_, opening, content)) return std::nullopt;
   auto pane = pane_of(opening, plane.normal, content, 0.0, price);
+  // The pane hides what one saw through an open sash.
+  const double open_m2 = opening.area_m2 - std::max(front, back);
+  if (pane && open_m2 > (1.0 - covered) * opening.area_m2) {
+    if (pane->patch.gone.empty()) return std::nullopt;
+    const double size_m = size_of(opening);
+    pane->cost += open_m2 * size_m * size_m / 3.0 + mesh_.looks.cost_of_hole(open_m2);
+    pane->error_m = std::max(pane->error_m, size_m);
+  }
   if (closed_) return pane;
   auto behind = recess(opening, plane.normal, content, price);
   if (!pane || !behind) return pane ? std::move(pane) : std::move(behind);
@@ -409,8 +420,7 @@ std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
   OpeningJob job;
   if (!WallMaker{mesh, opening, around}.run(job.patch)) return std::nullopt;
   job.patch.gone.insert(job.patch.gone.end(), filling.begin(), filling.end());
-  // As wide as a square of its area and outline.
-  const double size = 2.0 * opening.area_m2 / opening.perimeter_m;
+  const double size = size_of(opening);
   job.cost = (filling.empty() ? 1.0 : look_weight) * opening.area_m2 * size * size / 3.0;
   if (filling.empty()) job.cost += mesh.looks.cost_of_hole(opening.area_m2);
   for (const FaceId f : filling) job.cost += mesh.looks.cost(mesh.source->face_material(f), material, area(mesh, f));

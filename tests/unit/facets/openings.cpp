@@ -89,6 +89,54 @@ TEST_CASE("the bars of a deep window give way to its pane before that comes forw
   CHECK(compare(mesh, shown, {.samples = 20'000})->hausdorff_m < 0.05);
 }
 
+TEST_CASE("a window whose sash stands open closes at the error of the hole that one saw through") {
+  Mesh mesh = wall_with_loose_window(0.1F);
+  // The pane covers a third of the hole and hangs on a leaf of many faces that stands into the room.
+  mesh.indices.resize(std::size_t{3} * 8);
+  mesh.face_materials.resize(8);
+  add_quad(mesh, 1, {{{4.0F, 0.1F, 2}, {4.35F, 0.1F, 2}, {4.35F, 0.1F, 3.5F}, {4.0F, 0.1F, 3.5F}}});
+  for (const float x : {4.35F, 4.4F, 4.45F}) {
+    add_quad(mesh, 1, {{{x, 0.1F, 2}, {x, 0.6F, 2}, {x, 0.6F, 3.5F}, {x, 0.1F, 3.5F}}});
+  }
+  add_quad(mesh, 1, {{{4.35F, 0.6F, 2}, {4.45F, 0.6F, 2}, {4.45F, 0.6F, 3.5F}, {4.35F, 0.6F, 3.5F}}});
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  CHECK(compare_with_source(*built->model, mesh) == "");
+  bool closed = false;
+  for (Level level = 0; level <= built->model->record_count(); ++level) {
+    if (area_of(built->model->extract(level), 1) != Approx(1.5).epsilon(1e-4)) continue;
+    closed = true;
+    CHECK(built->model->error_m(level) > 0.59F);
+  }
+  CHECK(closed);
+}
+
+TEST_CASE("of two windows the one whose texture looks like the wall's goes first") {
+  Mesh mesh = wall_with_loose_window(0.1F);
+  const Mesh other = wall_with_loose_window(0.1F);
+  const auto first = static_cast<VertexId>(mesh.vertices.size());
+  for (const glm::vec3& p : other.vertices.positions) mesh.vertices.positions.push_back(p + glm::vec3{20, 0, 0});
+  for (const VertexId v : other.indices) mesh.indices.push_back(first + v);
+  for (const MaterialId m : other.face_materials) mesh.face_materials.push_back(2 * m);
+  mesh.materials.resize(3);
+  mesh.textures.resize(3);
+  for (std::uint32_t i = 0; i < 3; ++i) mesh.materials[i].texture = i;
+  const auto first_to_go = [&](const std::vector<glm::vec3>& colors) {
+    const auto built = build_by_facet_shift(mesh, {.texture_colors = colors});
+    REQUIRE(built.ok());
+    for (Level level = built->model->record_count() + 1; level-- > 0;) {
+      const Mesh shown = built->model->extract(level);
+      if (area_of(shown, 1) == 0.0) return 1;
+      if (area_of(shown, 2) == 0.0) return 2;
+    }
+    return 0;
+  };
+  constexpr glm::vec3 white{1.0F};
+  constexpr glm::vec3 black{0.0F};
+  CHECK(first_to_go({white, white, black}) == 1);
+  CHECK(first_to_go({white, black, white}) == 2);
+}
+
 TEST_CASE("an opening with nothing in it stays open as long as a window would stay") {
   Mesh mesh = wall_with_loose_window(0.1F);
   mesh.indices.resize(3 * 8);
