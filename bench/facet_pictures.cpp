@@ -4,10 +4,13 @@
 //
 //     bench_facet_pictures [--alone] [--sheets FOLDER] FILE...
 //
-// --alone leaves edge collapse out. --sheets writes a picture of each building: the source, then facet shift above and
-// edge collapse below at each share.
+// --alone leaves edge collapse out. --sheets writes a picture of each building: the source, then facet shift above,
+// edge collapse below and libmeshoptimizer, which sees geometry only and keeps no materials, at the bottom, at each
+// share.
+#include <array>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,7 @@
 #include <lodestone/formats.h>
 #include <lodestone/texture_colors.h>
 
+#include "meshoptimizer_peer.h"
 #include "picture_grid.h"
 #include "viewer/headless/headless.h"
 
@@ -41,6 +45,26 @@ Levels build(const Mesh& source, Build builder) {
   if (built) return levels_of(*built->model, source.triangle_count());
   std::fprintf(stderr, "%s\n", to_line(built.error()).c_str());
   return {};
+}
+
+// The peer sticks at seams: it gets the mesh with one vertex a place.
+Mesh welded(Mesh mesh) {
+  std::map<std::array<float, 3>, VertexId> first;
+  for (VertexId& v : mesh.indices) {
+    const glm::vec3 p = mesh.vertices.positions[v];
+    v = first.try_emplace({p.x, p.y, p.z}, v).first->second;
+  }
+  mesh.vertices.normals.clear();
+  return mesh;
+}
+
+Levels by_peer(const Mesh& source) {
+  const Mesh bare = welded(source);
+  Levels levels;
+  for (const double ratio : ratios) {
+    levels.push_back(by_meshoptimizer(bare, static_cast<std::uint32_t>(ratio * source.triangle_count())));
+  }
+  return levels;
 }
 
 Differences differences(const char* method, const Mesh& source, const Levels& levels) {
@@ -105,7 +129,9 @@ int main(int argc, char** argv) {
     }
     std::printf("}");
     std::fflush(stdout);
-    if (!folder.empty()) write_sheet(folder + "/" + stem + ".png", source, methods);
+    if (folder.empty()) continue;
+    methods.push_back(by_peer(source));
+    write_sheet(folder + "/" + stem + ".png", source, methods);
   }
   std::printf("],\n\"means\": [");
   for (std::size_t i = 0; i < ratio_count; ++i) {
