@@ -46,6 +46,9 @@ struct MeshDistance {
 /// face if none does); radians. 0 means that every face lies parallel to a plane that the source has there.
 [[nodiscard]] double normal_deviation_rad(const Mesh& a, const Mesh& b, const Context& context = {});
 
+/// Mean colour of an image that is not empty, from up to 128 x 128 of its pixels; R, G and B, 0..1, as stored (sRGB).
+[[nodiscard]] glm::vec3 mean_color(const Image& image);
+
 /// Root mean square difference of two pictures of one size over RGB, 0..255; with `mask` (one byte per pixel, 0 =
 /// skip).
 [[nodiscard]] double image_rms(const Image& a, const Image& b, std::span<const std::uint8_t> mask = {});

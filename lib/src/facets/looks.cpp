@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <lodestone/metrics.h>
+
 namespace lodestone::facets {
 namespace {
 
@@ -13,23 +15,9 @@ constexpr glm::dvec3 unknown_texel{0.5, 0.47, 0.45};  // of an image that is not
 constexpr glm::dvec3 dark_room{0.35};                 // behind glass
 constexpr double least_contrast = 0.004;              // different materials are never quite alike
 constexpr double hole_contrast = 0.05;                // of what is behind and not known
-constexpr std::uint32_t most_samples = 64;            // of an image's width and height
 
 glm::dvec3 mean_texel(const Texture& texture) {
-  if (!texture.image || texture.image->empty() || texture.image->channels < 3) return unknown_texel;
-  const Image& image = *texture.image;
-  const std::uint32_t step_x = std::max(1U, image.width / most_samples);
-  const std::uint32_t step_y = std::max(1U, image.height / most_samples);
-  glm::dvec3 sum{0.0};
-  double count = 0.0;
-  for (std::uint32_t y = 0; y < image.height; y += step_y) {
-    for (std::uint32_t x = 0; x < image.width; x += step_x) {
-      const std::uint8_t* texel = image.at(x, y);
-      sum += glm::dvec3{texel[0], texel[1], texel[2]} / 255.0;
-      count += 1.0;
-    }
-  }
-  return sum / count;
+  return texture.image && !texture.image->empty() ? glm::dvec3{mean_color(*texture.image)} : unknown_texel;
 }
 
 }  // namespace

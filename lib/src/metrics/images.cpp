@@ -21,6 +21,24 @@ std::array<int, 3> difference(const Image& a, const Image& b, std::uint32_t x, s
 
 }  // namespace
 
+glm::vec3 mean_color(const Image& image) {
+  assert(!image.empty());
+  constexpr std::uint32_t most_samples = 64;  // of width and height
+  const std::uint32_t step_x = std::max(1U, image.width / most_samples);
+  const std::uint32_t step_y = std::max(1U, image.height / most_samples);
+  glm::dvec3 sum{0.0};
+  double count = 0.0;
+  for (std::uint32_t y = 0; y < image.height; y += step_y) {
+    for (std::uint32_t x = 0; x < image.width; x += step_x) {
+      const std::uint8_t* texel = image.at(x, y);
+      const bool grey = image.channels < 3;
+      sum += glm::dvec3{texel[0], texel[grey ? 0 : 1], texel[grey ? 0 : 2]} / 255.0;
+      count += 1.0;
+    }
+  }
+  return glm::vec3{sum / count};
+}
+
 double image_rms(const Image& a, const Image& b, std::span<const std::uint8_t> mask) {
   assert(a.width == b.width && a.height == b.height);
   assert(mask.empty() || mask.size() == std::size_t{a.width} * a.height);
