@@ -144,6 +144,7 @@ class OutcropWriter {
   [[nodiscard]] Status finish();
 
   fs::path folder_;
+  bool made_folder_ = false;  // it was not there before
   const TilesetOptions& options_;
   const Context& context_;
   Context quiet_;  // cancels, but does not report: for jobs that run beside each other
@@ -183,6 +184,7 @@ Status OutcropWriter::prepare_folder(const std::string& build) {
                  "leave --resume out to write over it",
                  folder_.string()};
   }
+  made_folder_ = !fs::exists(folder_, fault);
   for (const char* name : {"tiles", "work"}) {
     fs::create_directories(folder_ / name, fault);
     if (fault) return cannot_make(folder_ / name, fault);
@@ -199,7 +201,8 @@ void OutcropWriter::leave_no_trace() const {
   std::error_code fault;
   if (!fs::is_empty(folder_ / "tiles", fault) || fault) return;
   fs::remove(folder_ / "build.json", fault);
-  for (const fs::path& folder : {folder_ / "work", folder_ / "tiles", folder_}) fs::remove(folder, fault);  // if empty
+  for (const char* name : {"work", "tiles"}) fs::remove(folder_ / name, fault);  // if empty
+  if (made_folder_) fs::remove(folder_, fault);
 }
 
 void OutcropWriter::sort_tiles() {
