@@ -100,11 +100,13 @@ int run_program(const Verbs& verbs, int argc, char** argv) {
     Session session{common};
     return session.finish(Error{ErrorCode::BadArgument, std::string{fault.what()} + "; see lodestone --help", ""});
   }
-  Session session{common};
   constexpr std::uint64_t least_memory_bytes = 32'000'000;  // what the program is before it does anything
   if (common.max_memory_bytes != 0 && common.max_memory_bytes < least_memory_bytes) {
+    common.max_memory_bytes = 0;  // not even this answer could be kept to it
+    Session session{common};
     return session.finish(Error{ErrorCode::BadArgument, "--max-memory: less than 32MB cannot be kept to", ""});
   }
+  Session session{common};
   return session.finish(run_guarded(*chosen, session));
 }
 
