@@ -14,6 +14,12 @@
 
 #include <lodestone/context.h>
 
+#if defined(__SANITIZE_THREAD__)
+#include <atomic>
+#include <thread>
+#include <vector>
+#endif
+
 namespace lodestone {
 
 // Number of threads that parallel_chunks() will use.
@@ -48,11 +54,22 @@ void parallel_chunks(std::size_t count, std::size_t chunk, const Context& contex
     for (std::size_t i = 0; i < chunks; ++i) run(i);
     return;
   }
+#if defined(__SANITIZE_THREAD__)  // cannot see into the scheduler, which is built without it: threads take its place
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < worker_count(context); ++t) {
+    threads.emplace_back([&] {
+      for (std::size_t i = next++; i < chunks; i = next++) run(i);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+#else
   with_workers(context.max_workers, [&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>{0, chunks, 1}, [&](const tbb::blocked_range<std::size_t>& range) {
       for (std::size_t i = range.begin(); i != range.end(); ++i) run(i);
     });
   });
+#endif
 }
 
 // Calls first(context) and second(context), at the same time where there are workers for it; each gets the context that
@@ -66,9 +83,15 @@ void parallel_both(const Context& context, First first, Second second) {
   }
   Context shared = context;
   shared.max_workers = 0;
+#if defined(__SANITIZE_THREAD__)
+  std::thread beside{[&] { second(shared); }};
+  first(shared);
+  beside.join();
+#else
   with_workers(context.max_workers, [&] {
     tbb::parallel_invoke([&] { tbb::this_task_arena::isolate([&] { first(shared); }); }, [&] { second(shared); });
   });
+#endif
 }
 
 // Calls work(i) for each i in [0, count), `chunk` of them at a time on one thread.

@@ -16,16 +16,15 @@ struct Face {
   FaceId id = none;
 };
 
-enum PointFlag : std::uint8_t {
-  point_border = 1,   // on edges with one face only, otherwise manifold
-  point_complex = 2,  // non-manifold, or two sheets touch
-  point_line = 4,     // on a seam or material border
-  point_frozen = 8,   // never moves, never goes
-  point_locked = 16,  // taken part in a collapse of this pass
-  point_sharp = 32,   // on a sharp edge that passes through: may only go along it
-  point_corner = 64,  // where sharp edges end or meet: stays
-  point_outer = 128,  // a neighbour lies outside the region of this pass
-};
+// Flags of points.
+inline constexpr std::uint8_t point_border = 1;   // on edges with one face only, otherwise manifold
+inline constexpr std::uint8_t point_complex = 2;  // non-manifold, or two sheets touch
+inline constexpr std::uint8_t point_line = 4;     // on a seam or material border
+inline constexpr std::uint8_t point_frozen = 8;   // never moves, never goes
+inline constexpr std::uint8_t point_locked = 16;  // taken part in a collapse of this pass
+inline constexpr std::uint8_t point_sharp = 32;   // on a sharp edge that passes through: may only go along it
+inline constexpr std::uint8_t point_corner = 64;  // where sharp edges end or meet: stays
+inline constexpr std::uint8_t point_outer = 128;  // a neighbour lies outside the region of this pass
 
 // The corner that follows corner k of a face, and the one before it. Tables, because k is as good as random and a
 // branch on it would be guessed wrong.
@@ -40,7 +39,7 @@ struct WorkingMesh {
   std::vector<Face> faces;
   std::vector<glm::vec3> position;     // per point
   std::vector<float> deviation_m;      // per point: of the surface around it from the source
-  std::vector<std::uint8_t> flags;     // per point: PointFlag
+  std::vector<std::uint8_t> flags;     // per point: point_border and others
   std::vector<float> sharpness;        // per point, to the wanted power; empty if it does not count
   std::vector<std::uint32_t> part;     // per point: connected part; empty if there is one
   std::vector<VertexId> wedge;         // per point: the vertex there; empty if some point has several

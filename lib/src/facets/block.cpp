@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -232,10 +233,9 @@ class Block::Caster {
 
   // A facet is of one material if possible. The bottom chooses last: it is seldom seen.
   void choose_faces() {
-    std::map<std::uint32_t, std::vector<std::size_t>> facets;
+    std::map<std::uint32_t, std::vector<std::size_t>, std::greater<>> facets;
     for (std::size_t i = 0; i < faces_.size(); ++i) facets[block_.triangles_[i].facet].push_back(i);
-    for (auto at = facets.rbegin(); at != facets.rend(); ++at) {
-      const auto& [facet, triangles] = *at;
+    for (const auto& [facet, triangles] : facets) {
       const glm::dvec3 normal = normal_of(block_.triangles_[triangles[0]]);
       const MaterialId material = material_of(facet, normal, triangles.size());
       const auto rank = [&](FaceId f) {

@@ -148,17 +148,17 @@ std::size_t SlideJudge::outline_of(const SlidingFace& s) {
 void SlideJudge::join_spokes() {
   std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) { return a.to < b.to; });
   std::size_t end = 0;
-  for (std::size_t i = 0; i < spokes_.size(); ++i) {
-    if (end > 0 && spokes_[end - 1].to == spokes_[i].to) {
+  for (const Spoke& next : spokes_) {
+    if (end > 0 && spokes_[end - 1].to == next.to) {
       Spoke& spoke = spokes_[end - 1];
       ++spoke.faces;
-      if (spoke.material != spokes_[i].material) {
+      if (spoke.material != next.material) {
         spoke.mixed = true;
-        spoke.other = spokes_[i].material;
+        spoke.other = next.material;
       }
-      spoke.border = spoke.border && glm::dot(spoke.side, spokes_[i].side) > one_side_cosine;
+      spoke.border = spoke.border && glm::dot(spoke.side, next.side) > one_side_cosine;
     } else {
-      spokes_[end++] = spokes_[i];
+      spokes_[end++] = next;
     }
   }
   spokes_.resize(end);

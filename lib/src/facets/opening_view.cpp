@@ -32,7 +32,7 @@ class Raster {
         const double s = ((p.x - a.x) * (c.y - a.y) - (c.x - a.x) * (p.y - a.y)) / area;
         const double t = ((b.x - a.x) * (p.y - a.y) - (p.x - a.x) * (b.y - a.y)) / area;
         if (s < 0.0 || t < 0.0 || s + t > 1.0) continue;
-        const auto at = static_cast<std::size_t>(y * samples + x);
+        const std::size_t at = static_cast<std::size_t>(y) * samples + static_cast<std::size_t>(x);
         const double height_m = a.z + s * (b.z - a.z) + t * (c.z - a.z);
         if (height_m <= height_m_[at]) continue;
         height_m_[at] = height_m;
@@ -101,8 +101,9 @@ double OpeningView::farthest_m(double depth_m) const {
       for (const int y : {i / samples - away, i / samples + away}) {
         if (y < 0 || y >= samples) continue;
         for (int x = 0; x < samples; ++x) {
-          const glm::dvec3 apart{step.x * (x - i % samples), step.y * away,
-                                 offset_m_ - height_m_[static_cast<std::size_t>(y * samples + x)] - depth_m};
+          const glm::dvec3 apart{
+              step.x * (x - i % samples), step.y * away,
+              offset_m_ - height_m_[static_cast<std::size_t>(y) * samples + static_cast<std::size_t>(x)] - depth_m};
           nearest2 = std::min(nearest2, glm::dot(apart, apart));
         }
       }
@@ -145,14 +146,16 @@ std::optional<WindowFrame> OpeningView::best_frame(double area_m2, std::size_t f
   best.cost = std::numeric_limits<double>::infinity();
   const glm::dvec2 size = high_ - low_;
   std::vector<double> inside(faces_.size()), outside(faces_.size());
-  for (double d = inset_step_m; d < most_inset_ratio * std::min(size.x, size.y); d += inset_step_m) {
+  for (int step = 1; step * inset_step_m < most_inset_ratio * std::min(size.x, size.y); ++step) {
+    const double d = step * inset_step_m;
     std::fill(inside.begin(), inside.end(), 0.0);
     std::fill(outside.begin(), outside.end(), 0.0);
     const glm::dvec2 rim = double{samples} * d / size;
     for (int i = 0; i < samples * samples; ++i) {
       const MaterialId m = seen_[static_cast<std::size_t>(i)];
       if (m == none) continue;
-      const glm::dvec2 at{i % samples + 0.5, i / samples + 0.5};
+      const int row = i / samples;
+      const glm::dvec2 at{i % samples + 0.5, row + 0.5};
       const bool in = at.x > rim.x && at.y > rim.y && at.x < samples - rim.x && at.y < samples - rim.y;
       (in ? inside : outside)[m] += 1.0 / (samples * samples);
     }

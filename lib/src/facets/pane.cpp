@@ -80,9 +80,13 @@ class PaneMaker {
   // Along the opening: its own corners, or others behind them.
   [[nodiscard]] std::optional<std::vector<Corner>> outer_ring(double depth_m) {
     std::vector<Corner> ring;
-    for (auto p = site_.opening.loop.rbegin(); p != site_.opening.loop.rend(); ++p) ring.push_back({*p, mesh_.at(*p)});
+    std::transform(site_.opening.loop.rbegin(), site_.opening.loop.rend(), std::back_inserter(ring),
+                   [&](std::uint32_t p) {
+                     return Corner{p, mesh_.at(p)};
+                   });
     if (depth_m == 0.0) return ring;
     std::vector<glm::dvec3> corners;
+    corners.reserve(ring.size());
     for (const Corner& c : ring) corners.push_back(c.at - depth_m * site_.normal);
     ring = take_points(corners);
     return ring.empty() ? std::nullopt : std::optional{std::move(ring)};

@@ -64,7 +64,7 @@ class OutcropBuilder {
     std::uint32_t leaf = 0;
     MaterialId material = 0;
     FeatureId feature = none;
-    friend auto operator<=>(const FaceName&, const FaceName&) = default;
+    friend auto operator<=>(const FaceName&, const FaceName&) = default;  // NOLINT(modernize-use-nullptr): has none
   };
 
   void plan_bytes();

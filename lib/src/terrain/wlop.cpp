@@ -6,6 +6,7 @@
 // Where the radius spans 16 posts and more, the density of posts is found at every second, third ... of them and among
 // these only, and holds for those beside it: it would take nine tenths of the time, and is much the same there.
 #include <algorithm>
+#include <cmath>
 
 #include "terrain/sample_points.h"
 
@@ -115,7 +116,7 @@ class Projection {
   void sort_into_bins() {
     columns_ = size / (reach_x_ + 1) + 1;
     rows_ = size / (reach_y_ + 1) + 1;
-    bins_.assign(static_cast<std::size_t>(columns_ * rows_), {});
+    bins_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
     for (std::uint32_t i = 0; i < points_.size(); ++i) bins_[bin_of(points_[i], 0, 0)].push_back(i);
   }
   [[nodiscard]] std::size_t bin_of(const glm::dvec3& p, int dx, int dy) const {
@@ -147,8 +148,8 @@ class Projection {
     std::vector<glm::dvec3> moved(points_.size());
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const glm::dvec3& at = points_[i];
-      const Post middle{static_cast<int>(at.x / options_.spacing_m.x + 0.5),
-                        static_cast<int>(at.y / options_.spacing_m.y + 0.5)};
+      const Post middle{static_cast<int>(std::lround(at.x / options_.spacing_m.x)),
+                        static_cast<int>(std::lround(at.y / options_.spacing_m.y))};
       glm::dvec3 sum{0.0}, push{0.0};
       double weight = 0.0, push_weight = 0.0;
       each_post(at, middle, 1, [&](std::size_t here, const glm::dvec3& place, const Pull& found) {
