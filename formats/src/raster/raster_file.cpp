@@ -43,7 +43,7 @@ void set_up_once() {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALAllRegister();
-    GDALSetCacheMax64(16LL << 20);  // a strip of a wide raster; small, so that all rasters take about as much
+    GDALSetCacheMax64(10LL << 20);  // a strip of a wide raster; small, so that all rasters take about as much
     CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");                // no .aux.xml beside the data
     CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");  // headers beside the data are found by name
   });
