@@ -139,7 +139,8 @@ struct FacetShiftReport {
   std::uint32_t openings_recessed = 0;   ///< holes of a wall whose bars and frames gave way to a pane behind the wall
   std::uint32_t openings_flattened = 0;  ///< holes of a wall whose window came forward into the wall's plane
   std::uint32_t openings_filled = 0;     ///< flush windows and holes that the wall closed over
-  std::uint32_t parts_vanished = 0;      ///< detached parts that sank into what they hang on
+  std::uint32_t parts_vanished = 0;      ///< detached parts that went: frames, bars, railings, pipes, antennas
+  std::uint32_t parts_sunk = 0;          ///< of these, flat into a plane that they hung on; the others shrank
   std::uint32_t points_merged = 0;       ///< corner points that slid within their planes onto a neighbour
   std::uint32_t tilting_collapses = 0;   ///< the same where some face had to leave its direction
   std::string sentence;                  ///< what holds the model above the target, empty if it was reached

@@ -14,6 +14,7 @@
 
 #include <lodestone/repair.h>
 
+#include "facets/appendages.h"
 #include "facets/block.h"
 #include "facets/build_log.h"
 #include "facets/crossing.h"
@@ -331,7 +332,7 @@ void Builder::vanish_parts(double price) {
       leant_upon[p] = 1;
       mesh_.deviation_m[p] = std::max(mesh_.deviation_m[p], static_cast<float>(part.error_m));
     }
-    vanish(mesh_, part.faces, Going::Shrinking, part.error_m, log_);
+    report_.parts_sunk += sink(mesh_, part, log_) ? 1 : 0;
     ++report_.parts_vanished;
   }
 }

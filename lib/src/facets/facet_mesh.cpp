@@ -349,10 +349,8 @@ VertexId middle_one(const FacetMesh& mesh, std::span<const VertexId> vertices) {
   return *std::min_element(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) { return away(a) < away(b); });
 }
 
-}  // namespace
-
-void vanish(FacetMesh& mesh, std::span<const FaceId> faces, Going going, double error_m, progressive::EditLog& log) {
-  log.begin(static_cast<float>(error_m));
+// Takes the faces away; returns the vertices that nothing uses any more, ascending.
+std::vector<VertexId> take_away(FacetMesh& mesh, std::span<const FaceId> faces, progressive::EditLog& log) {
   std::vector<VertexId> vertices;
   mesh.touched.insert(mesh.touched.end(), faces.begin(), faces.end());
   for (const FaceId f : faces) {
@@ -368,8 +366,26 @@ void vanish(FacetMesh& mesh, std::span<const FaceId> faces, Going going, double 
     }
   }
   std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+void vanish(FacetMesh& mesh, std::span<const FaceId> faces, Going going, double error_m, progressive::EditLog& log) {
+  log.begin(static_cast<float>(error_m));
+  const std::vector<VertexId> vertices = take_away(mesh, faces, log);
   const VertexId onto = going == Going::Shrinking && !vertices.empty() ? middle_one(mesh, vertices) : none;
   for (const VertexId v : vertices) log.remove_vertex(v, onto);
+  log.end();
+}
+
+void vanish(FacetMesh& mesh, std::span<const FaceId> faces, std::span<const std::pair<VertexId, VertexId>> onto,
+            double error_m, progressive::EditLog& log) {
+  log.begin(static_cast<float>(error_m));
+  for (const VertexId v : take_away(mesh, faces, log)) {
+    const auto at = std::lower_bound(onto.begin(), onto.end(), std::pair{v, VertexId{0}});
+    log.remove_vertex(v, at != onto.end() && at->first == v ? at->second : none);
+  }
   log.end();
 }
 

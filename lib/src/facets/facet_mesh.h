@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <lodestone/facet_shift.h>
@@ -120,5 +121,9 @@ enum class Going : std::uint8_t { Still, Shrinking };
 
 // Takes faces away, as one record.
 void vanish(FacetMesh& mesh, std::span<const FaceId> faces, Going going, double error_m, progressive::EditLog& log);
+
+// The same where some vertices, ascending, merge with others of these faces; the others stay where they are.
+void vanish(FacetMesh& mesh, std::span<const FaceId> faces, std::span<const std::pair<VertexId, VertexId>> onto,
+            double error_m, progressive::EditLog& log);
 
 }  // namespace lodestone::facets

@@ -228,16 +228,29 @@ std::uint64_t PartFinder::support_state(const Part& part) const {
   return sum;
 }
 
+// The one of the most area, which is never the one to go.
+std::uint32_t PartFinder::largest_part() const {
+  std::uint32_t largest = none;
+  double most = -1.0;
+  for (std::uint32_t id = 0; id < parts_.size(); ++id) {
+    double area = 0.0;
+    for (const FaceId f : parts_[id]) area += glm::length(mesh_.area_vector(mesh_.faces[f]));
+    if (area <= most) continue;
+    most = area;
+    largest = id;
+  }
+  return largest;
+}
+
 std::vector<Part> PartFinder::find(double limit_m, double price) {
   split();
   std::vector<Part> found;
   if (parts_.size() < 2) return found;
-  std::size_t most = 0;
-  for (const auto& faces : parts_) most = std::max(most, faces.size());
+  const std::uint32_t largest = largest_part();
   bool ready = false;
   for (std::uint32_t id = 0; id < parts_.size(); ++id) {
     const std::vector<FaceId>& faces = parts_[id];
-    if (faces.size() == most || faces.size() > most_part_faces) continue;
+    if (id == largest || faces.size() > most_part_faces) continue;
     Known& known = known_[faces.front()];
     const std::uint64_t state = state_of(faces);
     // A part that has lost faces since costs more for each of those left.

@@ -23,8 +23,8 @@ class PartFinder {
  public:
   explicit PartFinder(const FacetMesh& mesh);
 
-  // All parts but the largest whose every point is within `limit_m` of the rest and that cost at most `price` a face,
-  // the cheapest first.
+  // All parts but that of the most area whose every point is within `limit_m` of the rest and that cost at most `price`
+  // a face, the cheapest first.
   [[nodiscard]] std::vector<Part> find(double limit_m, double price);
 
   // The faces that hang together with this one, as of the last call of find() or of the start.
@@ -41,6 +41,7 @@ class PartFinder {
     Part part;
   };
   void split();
+  [[nodiscard]] std::uint32_t largest_part() const;
   [[nodiscard]] std::uint64_t state_of(const std::vector<FaceId>& faces) const;
   enum class Look : std::uint8_t { FromCorners, Everywhere };
   [[nodiscard]] bool measure(double limit_m, double price, Known& known);
