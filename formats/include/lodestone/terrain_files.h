@@ -31,15 +31,16 @@ struct RasterOptions {
   Voids voids = Voids::Skip;
   double fill_m = 0.0;                   ///< metres, after scaling
   std::uint32_t interpolate_reach = 64;  ///< samples
-  double scale = 1.0;                    ///< height = sample * scale + offset_m
+  double scale = 1.0;                    ///< height = sample in metres * scale + offset_m
   double offset_m = 0.0;         ///< for instance the geoid's height, if clients want heights above the ellipsoid
   std::optional<double> nodata;  ///< instead of what the file says
 };
 
 /// Opens a grid of heights: GeoTIFF, HGT, netCDF, ASCII grid, VRT and more, in any coordinate system (reprojected on
 /// reading; none: degrees, with a warning). Read by window: memory does not grow with the file. Posts are interpolated
-/// linearly between sample centres; a raster that spans 360 degrees is closed around the globe. Errors: NotFound,
-/// BadData, Unsupported.
+/// linearly between sample centres; a raster that spans 360 degrees is closed around the globe. Samples are unpacked by
+/// the file's own scale and offset and converted from feet where it says so; any other unit than metres is a warning.
+/// Errors: NotFound, BadData, Unsupported.
 [[nodiscard]] Result<std::unique_ptr<HeightSource>> open_raster(const std::filesystem::path& file,
                                                                 const RasterOptions& options);
 

@@ -9,6 +9,8 @@
 #include <gdalwarper.h>
 #include <ogr_spatialref.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -63,6 +65,22 @@ bool is_wgs84_like(const OGRSpatialReference& system) {
 
 bool upright(const double* transform) { return transform[2] == 0.0 && transform[4] == 0.0 && transform[1] > 0.0; }
 
+// Metres in one of what the file says its heights are in; 0 where it is not known.
+double metres_in(const std::string& unit) {
+  std::string word = unit;
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const char* name : {"", "m", "metre", "metres", "meter", "meters", "1"}) {
+    if (word == name) return 1.0;
+  }
+  for (const char* name : {"ft", "foot", "feet"}) {
+    if (word == name) return 0.3048;
+  }
+  for (const char* name : {"us survey foot", "us survey feet", "ftus", "us-ft"}) {
+    if (word == name) return 1200.0 / 3937.0;
+  }
+  return 0.0;
+}
+
 // The same raster in longitude and latitude. GDAL computes it block by block when it is read, exactly, not by
 // approximation, so a sample does not depend on the window in which it is asked for.
 Dataset reproject(GDALDataset& dataset, const std::optional<double>& nodata) {
@@ -94,6 +112,8 @@ struct RasterFile::Handle {
   Dataset file;
   Dataset warped;  // null: the file is used as it is; closed before it
   double nodata = nan_value;
+  double scale = 1.0;  // height = sample * scale + offset_m: packed samples, units other than metres
+  double offset_m = 0.0;
   [[nodiscard]] GDALDataset& dataset() const { return warped ? *warped : *file; }
   Handle() = default;
   Handle(const Handle&) = delete;
@@ -135,6 +155,10 @@ Result<std::unique_ptr<RasterFile::Handle>> RasterFile::open_handle() const {
   if (dataset.GetGeoTransform(transform) != CE_None) {
     return Error{ErrorCode::BadData, "it does not say where on the globe it lies", file_.string()};
   }
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  const double metres = metres_in(band.GetUnitType());
+  handle->scale = band.GetScale() * (metres > 0.0 ? metres : 1.0);
+  handle->offset_m = band.GetOffset() * (metres > 0.0 ? metres : 1.0);
   const OGRSpatialReference* system = dataset.GetSpatialRef();
   const bool in_degrees = system == nullptr || system->IsEmpty() != 0 || is_wgs84_like(*system);
   if (!in_degrees || !upright(transform)) {
@@ -146,7 +170,7 @@ Result<std::unique_ptr<RasterFile::Handle>> RasterFile::open_handle() const {
     return handle;
   }
   int has_nodata = 0;
-  handle->nodata = dataset.GetRasterBand(1)->GetNoDataValue(&has_nodata);
+  handle->nodata = band.GetNoDataValue(&has_nodata);
   if (has_nodata == 0) handle->nodata = nan_value;
   if (nodata_) handle->nodata = *nodata_;
   return handle;
@@ -172,11 +196,16 @@ Status RasterFile::read_frame(const Handle& handle) {
                  file_.string()};
   }
   frame_.around = std::fabs(span_deg - 360.0) < 0.5 * frame_.step_x_deg;
+  std::vector<Warning> warnings;
   const OGRSpatialReference* system = handle.file->GetSpatialRef();
   if (system == nullptr || system->IsEmpty() != 0) {
-    return {Done{}, {{"it names no coordinate system, taken as degrees on WGS 84", file_.string()}}};
+    warnings.push_back({"it names no coordinate system, taken as degrees on WGS 84", file_.string()});
   }
-  return Done{};
+  const std::string unit = handle.file->GetRasterBand(1)->GetUnitType();
+  if (metres_in(unit) == 0.0) {
+    warnings.push_back({"its samples are in \"" + unit + "\", taken as metres", file_.string()});
+  }
+  return {Done{}, std::move(warnings)};
 }
 
 Result<std::unique_ptr<RasterFile>> RasterFile::open(const std::filesystem::path& file,
@@ -226,8 +255,12 @@ Status RasterFile::read(std::int64_t column, std::int64_t row, std::int64_t widt
                  file_.string() + ", row " + std::to_string(row) + ", column " + std::to_string(column)};
   }
   const auto nodata = static_cast<float>(lease.handle().nodata);
+  const double scale = lease.handle().scale, offset_m = lease.handle().offset_m;
+  const bool packed = scale != 1.0 || offset_m != 0.0;
   for (float& sample : samples) {
-    if (sample == nodata || !std::isfinite(sample)) sample = std::numeric_limits<float>::quiet_NaN();
+    if (sample == nodata) sample = std::numeric_limits<float>::quiet_NaN();
+    if (packed) sample = static_cast<float>(sample * scale + offset_m);
+    if (!std::isfinite(sample)) sample = std::numeric_limits<float>::quiet_NaN();
   }
   return Done{};
 }

@@ -34,7 +34,8 @@ class RasterFile {
   RasterFile& operator=(const RasterFile&) = delete;
 
   [[nodiscard]] const RasterFrame& frame() const noexcept { return frame_; }
-  // Samples of a window inside the raster, row by row; NaN where there is no data. From any thread.
+  // Heights of a window inside the raster, row by row, in metres: unpacked by the file's own scale and offset, feet
+  // converted; NaN where there is no data. From any thread.
   [[nodiscard]] Status read(std::int64_t column, std::int64_t row, std::int64_t width, std::int64_t height,
                             std::span<float> samples) const;
 

@@ -36,7 +36,7 @@ Between between(double place, std::int64_t count, bool around) {
   return {static_cast<std::int64_t>(first), static_cast<float>(share)};
 }
 
-// A rectangle of samples; columns may run past the last one of a raster that goes around the globe.
+// A rectangle of samples; columns may run past both ends of a raster that goes around the globe.
 struct Block {
   std::int64_t column = 0;
   std::int64_t row = 0;
@@ -109,25 +109,24 @@ Result<Block> RasterHeights::load(std::int64_t first_column, std::int64_t last_c
                                   std::int64_t last_row) const {
   Block block{first_column, first_row, last_column - first_column + 1, last_row - first_row + 1, {}};
   block.samples.resize(static_cast<std::size_t>(block.width * block.height));
-  if (last_column < frame_.width) {
-    if (Status status = file_->read(first_column, first_row, block.width, block.height, block.samples); !status) {
-      return status.error();
+  std::vector<float> part;
+  // In one part, or in several on both sides of the seam.
+  for (std::int64_t at = first_column; at <= last_column;) {
+    const std::int64_t column = (at % frame_.width + frame_.width) % frame_.width;
+    const std::int64_t width = std::min(frame_.width - column, last_column - at + 1);
+    if (width == block.width) {
+      if (Status status = file_->read(column, first_row, width, block.height, block.samples); !status) {
+        return status.error();
+      }
+      return block;
     }
-    return block;
-  }
-  // In two parts, on both sides of the seam.
-  const std::int64_t before = frame_.width - first_column, after = block.width - before;
-  std::vector<float> part(static_cast<std::size_t>(std::max(before, after) * block.height));
-  const auto copy = [&](std::int64_t column, std::int64_t width, std::int64_t to) -> Status {
-    const std::span<float> samples{part.data(), static_cast<std::size_t>(width * block.height)};
-    if (Status status = file_->read(column, first_row, width, block.height, samples); !status) return status;
+    part.resize(static_cast<std::size_t>(width * block.height));
+    if (Status status = file_->read(column, first_row, width, block.height, part); !status) return status.error();
     for (std::int64_t y = 0; y < block.height; ++y) {
-      std::copy_n(part.begin() + y * width, width, block.samples.begin() + y * block.width + to);
+      std::copy_n(part.begin() + y * width, width, block.samples.begin() + y * block.width + (at - first_column));
     }
-    return Done{};
-  };
-  if (Status status = copy(first_column, before, 0); !status) return status.error();
-  if (Status status = copy(0, after, before); !status) return status.error();
+    at += width;
+  }
   return block;
 }
 
@@ -202,9 +201,10 @@ Status RasterHeights::sample(const Places& columns, std::size_t begin, std::size
     const auto is_void = [](float sample) { return std::isnan(sample); };
     if (options_.voids == Voids::Interpolate && std::any_of(block->samples.begin(), block->samples.end(), is_void)) {
       const std::int64_t reach = options_.interpolate_reach;
-      const std::int64_t east = frame_.around ? last : std::min(last + reach, frame_.width - 1);
-      block = load(std::max<std::int64_t>(0, first - reach), std::max(east, last),
-                   std::max<std::int64_t>(0, low - reach), std::min(high + reach, frame_.height - 1));
+      // Around the globe there is no outermost column: a sample must not depend on the window that asks for it.
+      const std::int64_t west = frame_.around ? first - reach : std::max<std::int64_t>(0, first - reach);
+      const std::int64_t east = frame_.around ? last + reach : std::max(last, std::min(last + reach, frame_.width - 1));
+      block = load(west, east, std::max<std::int64_t>(0, low - reach), std::min(high + reach, frame_.height - 1));
       if (!block) return block.error();
       fill_voids(*block, first, last, low, high);
     }
@@ -249,6 +249,7 @@ Status RasterHeights::read(const PostWindow& window, std::span<float> heights_m)
       float& height_m = heights_m[j * columns.size() + i];
       if (!std::isnan(height_m)) {
         height_m = static_cast<float>(height_m * options_.scale + options_.offset_m);
+        if (!std::isfinite(height_m)) height_m = no_data;  // more than a float holds
       } else if (fill && on_globe) {
         height_m = static_cast<float>(options_.fill_m);
       }

@@ -98,22 +98,25 @@ TEST_CASE("every cut of a tile is refused, and changed bytes never give indices 
   }
 }
 
-TEST_CASE("more than 65536 vertices take 32-bit indices") {
-  TerrainTile tile;
-  for (int y = 0; y < 260; ++y) {
-    for (int x = 0; x < 260; ++x) {
-      tile.u.push_back(static_cast<std::uint16_t>(x * 126));
-      tile.v.push_back(static_cast<std::uint16_t>(y * 126));
-      tile.height.push_back(static_cast<std::uint16_t>(x + y));
+TEST_CASE("more than 65536 vertices take 32-bit indices, no fewer do") {
+  for (const std::uint32_t count : {65535U, 65536U, 65537U, 67600U}) {
+    TerrainTile tile;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      tile.u.push_back(static_cast<std::uint16_t>(i % 260 * 126));
+      tile.v.push_back(static_cast<std::uint16_t>(i / 260 * 126));
+      tile.height.push_back(static_cast<std::uint16_t>(i % 500));
     }
+    for (std::uint32_t i = 0; i + 2 < count; i += 3) tile.triangles.insert(tile.triangles.end(), {i, i + 1, i + 2});
+    tile.west = {0, count - 1};
+    const auto bytes = encode_quantized_mesh(tile);
+    const std::size_t index_bytes = count > 65536 ? 4 : 2;
+    const std::size_t before = (92 + 6 * std::size_t{count} + index_bytes - 1) / index_bytes * index_bytes;
+    CHECK(bytes.size() == before + 5 * 4 + (tile.triangles.size() + 2) * index_bytes);
+    const auto mesh = decode_quantized_mesh(bytes);
+    REQUIRE(mesh.ok());
+    CHECK(mesh->triangles == tile.triangles);
+    CHECK(mesh->west == tile.west);
   }
-  for (std::uint32_t i = 0; i + 2 < tile.vertex_count(); i += 3)
-    tile.triangles.insert(tile.triangles.end(), {i, i + 1, i + 2});
-  tile.west = {0, 66000};
-  const auto mesh = decode_quantized_mesh(encode_quantized_mesh(tile));
-  REQUIRE(mesh.ok());
-  CHECK(mesh->triangles == tile.triangles);
-  CHECK(mesh->west == tile.west);
 }
 
 TEST_CASE("available rectangles hold the tiles and no other") {
@@ -205,6 +208,37 @@ TEST_CASE("a raster around the globe is closed behind its last column") {
   CHECK(at(-22.5) == 3.5F);  // between the last column and the first
   CHECK(at(22.5) == 0.5F);
   CHECK(at(180.0) == 4.0F);
+}
+
+TEST_CASE("a void on a raster around the globe is filled alike whichever window asks for it") {
+  const fs::path folder = test::scratch_folder("around_voids");
+  // A void at the seam, one at the antimeridian, one between; samples at the posts of zoom 0.
+  constexpr double step = 0.703125;
+  constexpr int columns = 512, rows = 5;
+  std::vector<std::vector<double>> samples(rows);
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const bool missing = j == 2 && (i < 3 || i > 508 || (i > 254 && i < 259) || i == 300);
+      samples[static_cast<std::size_t>(j)].push_back(missing ? -9999.0 : (i * 37 + j * 11) % 101);
+    }
+  }
+  const auto source = open_raster(write_grid(folder, samples, 0.0, 0.0, step), {.voids = Voids::Interpolate});
+  REQUIRE(source.ok());
+  const auto read = [&](std::int64_t column, std::uint32_t width) {
+    std::vector<float> heights(width);
+    REQUIRE((*source)->read({0, column, 130, width, 1}, heights).ok());
+    return heights;
+  };
+  const std::vector<float> whole = read(0, columns);
+  for (const std::int64_t middle : {0, 44, 256, 511}) {
+    for (std::int64_t at = middle - 5; at <= middle + 5; ++at) {
+      const float expected = whole[static_cast<std::size_t>((at + columns) % columns)];
+      CHECK(expected >= 0.0F);
+      CHECK(read(at, 1)[0] == expected);
+      CHECK(read(at - 2, 3)[2] == expected);
+      CHECK(read(at, 40)[0] == expected);
+    }
+  }
 }
 
 TEST_CASE("a projected raster lies where its projection says, voids left out without cliffs at their rims") {

@@ -8,6 +8,7 @@ import array
 import json
 import math
 import os
+import re
 import resource
 import shutil
 import signal
@@ -119,6 +120,21 @@ def formats(folder):
         subprocess.run(["gdal_translate", "-q", "-a_srs", "EPSG:4326", "-ot", "Float32", "-of", driver, raster, folder / name], check=True)
         terrain(folder / name, folder / driver)
         assert tree(folder / driver) == expected, f"{driver} gives other tiles"
+    # Packed by the file's own scale and offset; in feet; in a unit that is none.
+    packing = ["-ot", "Int16", "-scale", "-1500", "1500", "0", "12000", "-a_scale", "0.25", "-a_offset", "-1500"]
+    subprocess.run(["gdal_translate", "-q", "-a_srs", "EPSG:4326", *packing, raster, folder / "packed.tif"], check=True)
+    terrain(folder / "packed.tif", folder / "packed")
+    assert tree(folder / "packed") == expected, "packed samples are not unpacked"
+    described = (folder / "grid.vrt").read_text(encoding="utf-8")
+    for unit in ("ft", "K"):
+        (folder / f"{unit}.vrt").write_text(re.sub("(<VRTRasterBand[^>]*>)", rf"\1<UnitType>{unit}</UnitType>", described),
+                                            encoding="utf-8")
+    terrain(folder / "ft.vrt", folder / "feet")
+    terrain(raster, folder / "scaled", "--scale", "0.3048")
+    assert tree(folder / "feet") == tree(folder / "scaled"), "feet are not converted"
+    kelvin = subprocess.run([PROGRAM, "terrain", folder / "K.vrt", "-o", folder / "kelvin", "--max-zoom", "1", "--json"],
+                            check=True, capture_output=True, text=True)
+    assert 'in "K"' in json.loads(kelvin.stdout)["warnings"][0], kelvin.stdout
     # SRTM's own format, in which the name says the place: samples in big-endian words, north first.
     samples = array.array("h", (round(900 * math.sin(0.011 * i) * math.cos(0.017 * j) + 400 * math.sin(0.07 * i + 0.05 * j))
                                 for j in range(1201) for i in range(1201)))
