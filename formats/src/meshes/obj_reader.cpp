@@ -337,9 +337,18 @@ void ObjReader::begin_group(std::string_view kind, std::string_view name) {
 std::optional<glm::dvec3> ObjReader::better_origin() const {
   if (header_.origin || header_.offset || box_.empty()) return std::nullopt;
   constexpr double keeps_0_1_mm_m = 838.0;  // a float of this size has a last place of 0.06 mm
-  const glm::dvec3 wanted = choose_origin(box_);
-  for (int a = 0; a < 3; ++a) {
-    const double reach = std::max(std::abs(box_.min[a] - origin_[a]), std::abs(box_.max[a] - origin_[a]));
+  const auto reach_m = [&](const Box& box, int a) {
+    return std::max(std::abs(box.min[a] - origin_[a]), std::abs(box.max[a] - origin_[a]));
+  };
+  if (std::max({reach_m(box_, 0), reach_m(box_, 1), reach_m(box_, 2)}) <= keeps_0_1_mm_m) return std::nullopt;
+  // A stray vertex at (0, 0, 0), which no face names, must not pull the origin away from the surface.
+  Box used;
+  for (VertexId w = 0; w < wedges_.size(); ++w) {
+    used.add(glm::dvec3{pool_.positions[wedges_.key(w).position]} + origin_);
+  }
+  const glm::dvec3 wanted = choose_origin(used);
+  for (int a = 0; a < 3 && !used.empty(); ++a) {
+    const double reach = reach_m(used, a);
     if (wanted[a] != origin_[a] && reach > keeps_0_1_mm_m) return wanted;
   }
   return std::nullopt;

@@ -478,8 +478,9 @@ void PlyReader::add_materials() {
 }
 
 Result<LoadedMesh> PlyReader::finish() {
-  Box box;
-  for (const auto& p : positions_) {
+  Box box;  // of the surface: a stray vertex must not pull the origin away from it
+  for (const VertexId v : mesh_.indices) {
+    const glm::dvec3& p = positions_[per_corner_ ? source_[v] : v];
     if (std::isfinite(p.x + p.y + p.z)) box.add(p);
   }
   const HeaderComments& comments = header_.comments;

@@ -165,3 +165,19 @@ TEST_CASE("ply: doubles of a national grid keep 0.1 mm") {
   CHECK(read->mesh.crs == "EPSG:25832");
   CHECK(glm::length(corner(read->mesh, 0, 2) - glm::dvec3(678116.1234, 5403774.5679, 416.4321)) < 5e-5);
 }
+
+TEST_CASE("ply: coordinates of a national grid keep 0.1 mm beside a stray vertex at zero") {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n"
+      "property double z\nelement face 1\nproperty list uchar int vertex_indices\n";
+  const std::string vertices =
+      "0 0 0\n678116.1234 5403773.5678 416.4321\n678117.1234 5403773.5678 416.4321\n"
+      "678116.1234 5403774.5679 416.4321\n";
+  for (const std::string& text :
+       {header + "end_header\n" + vertices + "3 1 2 3\n",
+        header + "property list uchar float texcoord\nend_header\n" + vertices + "3 1 2 3 6 0 0 1 0 0 1\n"}) {
+    const auto read = read_text(text, "a.ply");
+    REQUIRE(read.ok());
+    CHECK(glm::length(corner(read->mesh, 0, 2) - glm::dvec3(678116.1234, 5403774.5679, 416.4321)) < 5e-5);
+  }
+}
