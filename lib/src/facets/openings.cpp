@@ -136,6 +136,10 @@ class WallMaker {
   bool run(Patch& patch) {
     std::vector<Edge> edges = outline(mesh_, around_);
     std::erase_if(edges, [&](const Edge& e) { return is_side(opening_, e.first, e.second); });
+    if (opening_.is_notch) {
+      const Edge foot{opening_.loop.front(), opening_.loop.back()};
+      edges.insert(std::lower_bound(edges.begin(), edges.end(), foot), foot);
+    }
     auto rings = chain(mesh_, edges, normal_);
     double whole = 0.0;
     std::size_t outer = 0;
@@ -413,6 +417,8 @@ std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
   std::vector<FaceId> filling;
   if (!find_filling(mesh, opening, plane, around, filling)) return std::nullopt;
   for (const std::uint32_t p : opening.loop) {
+    // The ends of a notch stay, and so may what hangs on them.
+    if (opening.is_notch && (p == opening.loop.front() || p == opening.loop.back())) continue;
     for (const FaceId f : mesh.faces_of[p]) {
       if (!contains(around, f) && !contains(filling, f)) return std::nullopt;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "facets/notches.h"
 #include "facets/outline.h"
 
 namespace lodestone::facets {
@@ -76,6 +77,12 @@ void Walls::find_openings(Wall& wall) const {
   const glm::dvec3 normal = mesh_.faces[plain].normal;
   for (auto& loop : chain(mesh_, outline(mesh_, wall.faces), normal)) {
     const double area_m2 = -signed_area(mesh_, loop, normal);
+    if (area_m2 < 0.0) {
+      for (Opening& notch : find_notches(mesh_, loop, normal)) {
+        notch.wall = plain;
+        wall.openings.push_back(std::move(notch));
+      }
+    }
     if (area_m2 <= 0.0 || loop.size() > most_corners) continue;
     Opening opening;
     for (std::size_t i = 0; i < loop.size(); ++i) {

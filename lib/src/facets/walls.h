@@ -10,10 +10,11 @@
 
 namespace lodestone::facets {
 
-// A hole in a wall.
+// A hole in a wall, or a notch in its lower side.
 struct Opening {
-  std::vector<std::uint32_t> loop;  // points, the wall to the left
-  FaceId wall = none;               // one of the faces around
+  std::vector<std::uint32_t> loop;  // points, the wall to the left; but beside a notch's last side there is none
+  bool is_notch = false;
+  FaceId wall = none;  // one of the faces around
   double area_m2 = 0.0;
   double perimeter_m = 0.0;
 };
