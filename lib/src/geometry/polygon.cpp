@@ -42,7 +42,7 @@ glm::dvec3 plane_normal(std::span<const glm::dvec3> ring) {
   return glm::length(sum) > 1e-9 * glm::length(largest) ? sum : largest;
 }
 
-// Rotates so that `normal` points at the viewer: the axis nearest to it is dropped.
+// Rotates so that `normal` points at the viewer, and drops the depth.
 class Projection {
  public:
   explicit Projection(const glm::dvec3& normal) {

@@ -5,6 +5,7 @@
 #include <lodestone/metrics.h>
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "data.h"
 #include "positions_only.h"
@@ -59,6 +60,30 @@ TEST_CASE("a closed manifold stays one, whatever the placement") {
       const glm::vec3 b = p[result->mesh.indices[i + 1]];
       const glm::vec3 c = p[result->mesh.indices[i + 2]];
       CHECK(glm::dot(glm::cross(b - a, c - a), a + b + c) > 0.0F);
+    }
+  }
+}
+
+TEST_CASE("no face turns over where every place costs the same") {
+  Mesh mesh = test::positions_only(test::grid(40, 40, 0.0F));
+  std::mt19937 random{3};
+  std::uniform_real_distribution<float> aside{-0.15F, 0.15F};
+  const float step_m = mesh.vertices.positions[1].x - mesh.vertices.positions[0].x;
+  for (auto& p : mesh.vertices.positions) p += step_m * glm::vec3{aside(random), aside(random), 0.0F};
+  for (const Placement placement :
+       {Placement::Optimal, Placement::OnEdge, Placement::Midpoint, Placement::EndPoint, Placement::Subset}) {
+    for (const double share : {0.5, 0.2, 0.05}) {
+      CAPTURE(static_cast<int>(placement), share);
+      EdgeCollapseOptions options = down_to(share, mesh);
+      options.placement = placement;
+      const auto result = simplify(mesh, options);
+      REQUIRE(result.ok());
+      const auto& p = result->mesh.vertices.positions;
+      for (std::size_t i = 0; i < result->mesh.indices.size(); i += 3) {
+        const glm::vec3 a = p[result->mesh.indices[i]];
+        const glm::vec3 ab = p[result->mesh.indices[i + 1]] - a, ac = p[result->mesh.indices[i + 2]] - a;
+        REQUIRE(ab.x * ac.y - ab.y * ac.x >= 0.0F);
+      }
     }
   }
 }
