@@ -21,6 +21,7 @@
 #include "facets/facet_mesh.h"
 #include "facets/joiner.h"
 #include "facets/judge.h"
+#include "facets/kinds.h"
 #include "facets/openings.h"
 #include "facets/outline.h"
 #include "facets/parts.h"
@@ -56,7 +57,9 @@ class Builder {
         planner_(mesh_),
         parts_(mesh_),
         block_(mesh_),
-        crossings_(mesh_, parts_) {}
+        crossings_(mesh_, parts_),
+        kinds_(mesh_),
+        offered_(mesh_.point_count(), 0) {}
 
   progressive::EditLog run(FacetShiftReport& report);
 
@@ -90,6 +93,8 @@ class Builder {
            : kind == OpeningJob::Kind::Flatten ? report_.openings_flattened
                                                : report_.openings_filled;
   }
+  void lead_kinds();
+  std::uint32_t follow(double error_m);
   void offer_around(std::span<const std::uint32_t> points);
   bool offer_later();
   [[nodiscard]] bool cuts_through();
@@ -113,6 +118,10 @@ class Builder {
   Block block_;
   bool block_due_ = false;  // the next slide would take a face that it needs
   CrossingFinder crossings_;
+  Kinds kinds_;
+  Kinds::Errand errand_;
+  std::uint32_t led_at_ = none;                                // records there were when kinds were told apart
+  std::vector<std::uint8_t> offered_;                          // per point
   std::set<std::pair<std::uint32_t, std::uint32_t>> refused_;  // slides, at this price
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
@@ -143,7 +152,7 @@ void Builder::drop_interior() {
 // The cheapest way for the point to slide onto a neighbour.
 void Builder::offer(std::uint32_t point) {
   const auto& faces = mesh_.faces_of[point];
-  if (faces.empty() || faces.size() > most_neighbours) return;
+  if (faces.empty() || faces.size() > most_neighbours || kinds_.follows(point)) return;
   Entry best{std::numeric_limits<double>::infinity(), point, none, mesh_.version[point]};
   double best_length = 0.0;
   slides_.look_at(point);
@@ -194,6 +203,41 @@ bool Builder::offer_later() {
   return true;
 }
 
+// The parts of the same kind do as the one for which errand_ was prepared; returns how many did.
+std::uint32_t Builder::follow(double error_m) {
+  for (std::uint32_t i = 0; i < errand_.size(); ++i) {
+    if (done()) return i;
+    const std::span<const Move> moves = errand_.moves(i);
+    moved_.set(moves);
+    if (moves.size() == 1 && takes_of_the_block(moves.front())) {
+      block_due_ = true;
+      return i;
+    }
+    apply(mesh_, moved_, error_m + errand_.apart_m(i), log_);
+  }
+  return errand_.size();
+}
+
+// Tells anew which parts are alike. What led or was alone and follows now waits; what is on its own again is looked at.
+void Builder::lead_kinds() {
+  if (led_at_ == log_.record_count()) return;
+  led_at_ = log_.record_count();
+  if (options_.order == ShiftOrder::OneByOne) {
+    parts_.split();
+    crossings_.start();
+    mesh_.touched.clear();
+    kinds_.update(parts_.parts());
+  }
+  for (std::uint32_t p = 0; p < mesh_.point_count() && !context_.cancelled(); ++p) {
+    if (kinds_.follows(p)) {
+      offered_[p] = 0;
+    } else if (offered_[p] == 0) {
+      offered_[p] = 1;
+      offer(p);
+    }
+  }
+}
+
 void Builder::slide_points(double price) {
   while (!done()) {
     if (queue_.empty() || queue_.top().key > price) {
@@ -202,7 +246,7 @@ void Builder::slide_points(double price) {
     }
     const Entry e = queue_.top();
     queue_.pop();
-    if (e.version != mesh_.version[e.point]) continue;
+    if (e.version != mesh_.version[e.point] || kinds_.follows(e.point)) continue;
     const Move move{e.point, e.onto, mesh_.place[e.onto]};
     slides_.look_at(e.point);
     const Verdict v = slides_.judge(e.onto, std::numeric_limits<double>::infinity());
@@ -220,8 +264,9 @@ void Builder::slide_points(double price) {
       block_due_ = true;
       return;
     }
+    kinds_.prepare({&move, 1}, errand_);
     apply(mesh_, moved_, v.error_m, log_);
-    ++(v.tilts ? report_.tilting_collapses : report_.points_merged);
+    (v.tilts ? report_.tilting_collapses : report_.points_merged) += 1 + follow(v.error_m);
     offer_around({&e.onto, 1});
   }
 }
@@ -273,10 +318,10 @@ bool Builder::shift_planes(double price) {
   for (std::uint32_t s = 0; s < mesh_.surface_faces.size() && !context_.cancelled(); ++s) {
     if (!is_due(s, price)) continue;
     std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
-    if (mesh_.surface_faces[s].empty()) continue;
+    if (mesh_.surface_faces[s].empty() || kinds_.follows(mesh_.faces[mesh_.surface_faces[s].front()])) continue;
     const std::uint64_t version = version_of(s);
     if (!is_stale(s, version, price)) continue;
-    const bool moves = planner_.look_at(s);
+    const bool moves = planner_.look_at(s) && !kinds_.follows(planner_.first_point());
     for (const Direction direction : {Direction::Inwards, Direction::Outwards}) {
       Known& known = known_[static_cast<std::size_t>(direction)][s];
       known = {version, moves ? key_of_shift(direction, price) : infinity};
@@ -303,8 +348,9 @@ bool Builder::shift_planes(double price) {
     if (plan.moves.empty()) continue;
     const Verdict v = judge_shift(mesh_, moved_, plan.moves);
     if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m || cuts_through()) continue;
+    kinds_.prepare(plan.moves, errand_);
     apply(mesh_, moved_, v.error_m, log_);
-    ++report_.shifts;
+    report_.shifts += 1 + follow(v.error_m);
     any = true;
     std::vector<std::uint32_t> ends;
     for (const Move& m : plan.moves) ends.push_back(m.onto == none ? m.point : m.onto);
@@ -403,7 +449,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   }
   openings_.emplace(mesh_, outline(mesh_, live).empty());
   for (auto& known : known_) known.resize(mesh_.surface_faces.size());
-  for (std::uint32_t p = 0; p < mesh_.point_count() && !context_.cancelled(); ++p) offer(p);
+  lead_kinds();
   double area = 0.0;
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) area += s.area_m2;
   const double diagonal = bounds(*mesh_.source).diagonal_m();
@@ -414,6 +460,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     refused_.clear();
     // Before points slide: a window goes whole, or its outline frays.
     while (!done() && close_openings(price)) continue;
+    lead_kinds();
     for (std::uint32_t round = 0; round < rounds_per_price && any && !done(); ++round) {
       slide_points(price);
       any = shift_planes(price);

@@ -23,6 +23,10 @@ class PartFinder {
  public:
   explicit PartFinder(const FacetMesh& mesh);
 
+  // To be called when faces may have been sewn to other parts.
+  void split();
+  [[nodiscard]] const std::vector<std::vector<FaceId>>& parts() const noexcept { return parts_; }
+
   // All parts but that of the most area whose every point is within `limit_m` of the rest and that cost at most `price`
   // a face, the cheapest first.
   [[nodiscard]] std::vector<Part> find(double limit_m, double price);
@@ -40,7 +44,6 @@ class PartFinder {
     std::uint64_t support_state = 0;
     Part part;
   };
-  void split();
   [[nodiscard]] std::uint32_t largest_part() const;
   [[nodiscard]] std::uint64_t state_of(const std::vector<FaceId>& faces) const;
   enum class Look : std::uint8_t { FromCorners, Everywhere };

@@ -28,6 +28,7 @@ class Planner {
   [[nodiscard]] double way_m(Direction direction) const {
     return next_event(direction == Direction::Outwards ? 1.0 : -1.0);
   }
+  [[nodiscard]] std::uint32_t first_point() const { return runners_.front().point; }
   [[nodiscard]] double area_m2() const noexcept { return area_m2_; }
   [[nodiscard]] std::size_t face_count() const noexcept { return faces_.size(); }
   // Empty if there is no way, or if the next plane is less important.
