@@ -22,8 +22,9 @@ namespace lodestone::facets {
 namespace {
 
 constexpr std::uint32_t most_corners = 8;
-constexpr std::uint32_t samples = 8192;    // of either surface, beside the corners
-constexpr double least_face_share = 1e-5;  // of the area: smaller faces are not needed to find the nearest
+constexpr double most_street_share = 0.03;  // of the faces, for several prisms: a house and its shed become one
+constexpr std::uint32_t samples = 8192;     // of either surface, beside the corners
+constexpr double least_face_share = 1e-5;   // of the area: smaller faces are not needed to find the nearest
 constexpr double facing_cosine = 0.7;
 constexpr double upright_sine = 0.01;
 constexpr double least_fabric_share = 0.15;  // of the area of all walls, or of all roofs
@@ -67,34 +68,79 @@ double farthest_m(const Mesh& mesh, const SurfaceSampler& sampler, const Triangl
   return std::sqrt(farthest);
 }
 
+// The footprint of one house of several, from its own faces.
+Footprint footprint_of(const FacetMesh& mesh, const Houses& houses, std::uint32_t house) {
+  const Mesh& source = *mesh.source;
+  Mesh part;
+  part.materials.emplace_back();
+  CharacteristicSurfaces found;
+  std::vector<std::uint32_t> surface_of(mesh.surfaces.surfaces.size(), none);
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+    if (houses.house_of_face[f] != house || !mesh.faces[f].live) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      part.indices.push_back(part.vertex_count());
+      part.vertices.positions.push_back(source.vertices.positions[mesh.faces[f].vertex[k]]);
+    }
+    std::uint32_t& surface = surface_of[mesh.faces[f].surface];
+    if (surface == none) {
+      surface = static_cast<std::uint32_t>(found.surfaces.size());
+      found.surfaces.push_back(mesh.surfaces.surfaces[mesh.faces[f].surface]);
+      found.surfaces.back().area_m2 = 0.0;
+      found.surfaces.back().face_count = 0;
+    }
+    found.surface_of_face.push_back(surface);
+    found.surfaces[surface].area_m2 += 0.5 * glm::length(mesh.area_vector(mesh.faces[f]));
+    ++found.surfaces[surface].face_count;
+  }
+  if (part.indices.empty()) return {.sentence = "there is nothing of it"};
+  return find_footprint(part, found, most_corners);
+}
+
 }  // namespace
 
-Block::Block(const FacetMesh& mesh) {
-  const Footprint footprint = find_footprint(*mesh.source, mesh.surfaces, most_corners);
-  sentence_ = footprint.sentence;
-  if (!sentence_.empty()) return;
+Block::Block(const FacetMesh& mesh) : houses_(tell_houses(mesh)) {
+  if (houses_.count > 1) {
+    for (std::uint32_t house = 0; house < houses_.count; ++house) {
+      const Footprint footprint = footprint_of(mesh, houses_, house);
+      if (footprint.sentence.empty()) add_prism(footprint, house);
+    }
+  }
+  if (triangles_.empty() || face_count() > most_street_share * mesh.live_faces) {
+    houses_ = {1, std::vector<std::uint32_t>(mesh.faces.size(), 0)};
+    corners_.clear();
+    triangles_.clear();
+    const Footprint footprint = find_footprint(*mesh.source, mesh.surfaces, most_corners);
+    sentence_ = footprint.sentence;
+    if (!sentence_.empty()) return;
+    add_prism(footprint, 0);
+  }
+  measure(*mesh.source);
+  choose_materials(mesh);
+}
+
+void Block::add_prism(const Footprint& footprint, std::uint32_t house) {
+  const auto low = static_cast<std::uint32_t>(corners_.size());
   const std::uint32_t n = footprint.corner_count();
+  const std::uint32_t high = low + n;
   std::vector<glm::dvec3> flat;
   for (const double z : {footprint.low_m, footprint.high_m}) {
     for (const glm::dvec2& c : footprint.corners) corners_.emplace_back(c.x, c.y, z);
   }
   for (const glm::dvec2& c : footprint.corners) flat.emplace_back(c.x, c.y, 0.0);
   for (const auto& t : triangulate_polygon(flat, footprint.loop_ends)) {
-    triangles_.push_back({{t[0], t[2], t[1]}, 0});
-    triangles_.push_back({{n + t[0], n + t[1], n + t[2]}, 1});
+    triangles_.push_back({{low + t[0], low + t[2], low + t[1]}, 0, house});
+    triangles_.push_back({{high + t[0], high + t[1], high + t[2]}, 1, house});
   }
   std::uint32_t facet = 2;
   std::uint32_t first = 0;
   for (const std::uint32_t end : footprint.loop_ends) {
     for (std::uint32_t i = first; i < end; ++i, ++facet) {
       const std::uint32_t j = i + 1 == end ? first : i + 1;
-      triangles_.push_back({{i, j, n + j}, facet});
-      triangles_.push_back({{i, n + j, n + i}, facet});
+      triangles_.push_back({{low + i, low + j, high + j}, facet, house});
+      triangles_.push_back({{low + i, high + j, high + i}, facet, house});
     }
     first = end;
   }
-  measure(*mesh.source);
-  choose_materials(mesh);
 }
 
 // No glass.
@@ -204,28 +250,29 @@ class Block::Caster {
   }
   [[nodiscard]] double area_of(FaceId f) const { return glm::length(mesh_.area_vector(mesh_.faces[f])); }
 
-  // How well a face can stand for one that faces along `normal`.
-  [[nodiscard]] double worth(FaceId f, const glm::dvec3& normal) const {
+  // How well a face can stand for one of a house that faces along `normal`.
+  [[nodiscard]] double worth(FaceId f, const glm::dvec3& normal, std::uint32_t house) const {
     const glm::dvec3& own = mesh_.faces[f].normal;
     const bool faces_there = glm::dot(own, normal) > facing_cosine;
     const bool upright = std::abs(own.z) < facing_cosine;
     const bool alike = upright == (std::abs(normal.z) < facing_cosine);
-    return area_of(f) * (faces_there ? 1.0 : alike ? 0.1 : 1e-3);
+    const double at_home = block_.houses_.house_of_face[f] == house ? 1.0 : 1e-6;
+    return area_of(f) * (faces_there ? 1.0 : alike ? 0.1 : 1e-3) * at_home;
   }
 
   // The best material for a facet that is left on enough faces, `none` if there is none.
-  [[nodiscard]] MaterialId material_of(std::uint32_t facet, const glm::dvec3& normal, std::size_t least_faces) const {
+  [[nodiscard]] MaterialId material_of(const Triangle& facet, const glm::dvec3& normal, std::size_t least_faces) const {
     std::vector<double> worths(mesh_.source->materials.size(), 0.0);
     std::vector<std::size_t> counts(worths.size(), 0);
     for (const FaceId f : live_) {
       const MaterialId material = mesh_.source->face_material(f);
-      worths[material] += worth(f, normal) * see_through(*mesh_.source, material);
+      worths[material] += worth(f, normal, facet.house) * see_through(*mesh_.source, material);
       ++counts[material];
     }
-    const Fabric& fabric = facet > 1 ? block_.walls_ : block_.roofs_;
+    const Fabric& fabric = facet.facet > 1 ? block_.walls_ : block_.roofs_;
     MaterialId best = none;
     for (MaterialId m = 0; m < worths.size(); ++m) {
-      if (facet != 0 && fabric.has[m] != 0) worths[m] *= 1e6;
+      if (facet.facet != 0 && block_.houses_.count == 1 && fabric.has[m] != 0) worths[m] *= 1e6;
       if (counts[m] >= least_faces && (best == none || worths[m] > worths[best])) best = m;
     }
     return best;
@@ -233,13 +280,17 @@ class Block::Caster {
 
   // A facet is of one material if possible. The bottom chooses last: it is seldom seen.
   void choose_faces() {
-    std::map<std::uint32_t, std::vector<std::size_t>, std::greater<>> facets;
-    for (std::size_t i = 0; i < faces_.size(); ++i) facets[block_.triangles_[i].facet].push_back(i);
-    for (const auto& [facet, triangles] : facets) {
-      const glm::dvec3 normal = normal_of(block_.triangles_[triangles[0]]);
+    using Facet = std::pair<std::uint32_t, std::uint32_t>;  // and its house
+    std::map<Facet, std::vector<std::size_t>, std::greater<>> facets;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      facets[{block_.triangles_[i].facet, block_.triangles_[i].house}].push_back(i);
+    }
+    for (const auto& [name, triangles] : facets) {
+      const Triangle& facet = block_.triangles_[triangles[0]];
+      const glm::dvec3 normal = normal_of(facet);
       const MaterialId material = material_of(facet, normal, triangles.size());
       const auto rank = [&](FaceId f) {
-        return std::pair{mesh_.source->face_material(f) == material, worth(f, normal)};
+        return std::pair{mesh_.source->face_material(f) == material, worth(f, normal, facet.house)};
       };
       for (const std::size_t i : triangles) {
         const auto best =
@@ -283,11 +334,11 @@ class Block::Caster {
     patch.gone = live_;
     patch.surface = mesh_.faces[faces_[0]].surface;
     patch.normal = normal_of(block_.triangles_[0]);
-    std::map<std::uint32_t, FaceId> map_of;  // per facet: the face whose texture goes on
+    std::map<std::pair<std::uint32_t, std::uint32_t>, FaceId> map_of;  // per house and facet: whose texture goes on
     std::vector<std::uint8_t> placed(vertices_.size(), 0);
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const Triangle& t = block_.triangles_[i];
-      const Face& face = mesh_.faces[map_of.try_emplace(t.facet, faces_[i]).first->second];
+      const Face& face = mesh_.faces[map_of.try_emplace({t.house, t.facet}, faces_[i]).first->second];
       Redrawn redrawn{.face = faces_[i]};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t w = wedge(t, k);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The last level of a building: a closed prism over its footprint.
+// The last level of a building: a closed prism over its footprint; of a street, one for each house.
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "facets/facet_mesh.h"
+#include "facets/footprint.h"
+#include "facets/houses.h"
 #include "facets/patch.h"
 
 namespace lodestone::facets {
@@ -25,21 +27,24 @@ class Block {
   // Whether these faces are among the last that it needs, of all or for its looks.
   [[nodiscard]] bool needs(const FacetMesh& mesh, std::span<const FaceId> faces) const noexcept;
 
-  // All faces that are left become the prism, in one record. False, and nothing happens, if they or their vertices are
+  // All faces that are left become the prisms, in one record. False, and nothing happens, if they or their vertices are
   // too few.
   [[nodiscard]] bool apply(FacetMesh& mesh, progressive::EditLog& log) const;
 
  private:
   struct Triangle {
-    std::array<std::uint32_t, 3> corner{};  // the first half of the corners is below, the second above
-    std::uint32_t facet = 0;                // 0 bottom, 1 top, then the sides
+    std::array<std::uint32_t, 3> corner{};
+    std::uint32_t facet = 0;  // 0 bottom, 1 top, then the sides
+    std::uint32_t house = 0;
   };
   class Caster;
+  void add_prism(const Footprint& footprint, std::uint32_t house);
   void measure(const Mesh& source);
   void choose_materials(const FacetMesh& mesh);
 
+  Houses houses_;
   std::vector<glm::vec3> corners_;
-  std::vector<Triangle> triangles_;  // largest first
+  std::vector<Triangle> triangles_;
   // What walls, and what roofs are made of to a good part, and how many faces of that must be left.
   struct Fabric {
     std::vector<std::uint8_t> has;  // per material

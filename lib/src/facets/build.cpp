@@ -366,7 +366,7 @@ void Builder::vanish_parts(double price) {
   for (const Part& part : parts_.find(limit, price)) {
     if (done()) break;
     if (part.error_m > options_.max_error_m) continue;
-    if (mesh_.live_faces - part.faces.size() < 1) continue;
+    if (mesh_.live_faces - part.faces.size() <= block_.face_count()) continue;
     const bool holds = std::any_of(part.faces.begin(), part.faces.end(), [&](FaceId f) {
       const auto& p = mesh_.faces[f].point;
       return leant_upon[p[0]] != 0 || leant_upon[p[1]] != 0 || leant_upon[p[2]] != 0;

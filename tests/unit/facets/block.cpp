@@ -91,6 +91,80 @@ TEST_CASE("houses of every roof end as a block, told by name, within the claimed
   }
 }
 
+// Three houses of different roofs in a row, the second and third wall to wall, with a pavement before them.
+Mesh row_of_houses(std::array<Box, 3>& boxes) {
+  Mesh row;
+  double end_m = 0.0;
+  constexpr std::array roofs{Roof::Flat, Roof::Gable, Roof::Hip};
+  for (std::size_t i = 0; i < roofs.size(); ++i) {
+    const Mesh house = test::small_house(2000, roofs[i]);
+    Box box = bounds(house);
+    const glm::dvec3 move{end_m - box.min.x, -box.min.y, -box.min.z};
+    end_m += box.size().x + (i == 0 ? 3.0 : 0.0);
+    boxes[i] = {box.min + move, box.max + move};
+    const VertexId first = row.vertex_count();
+    for (const glm::vec3& p : house.vertices.positions) row.vertices.positions.emplace_back(glm::dvec3{p} + move);
+    for (const VertexId v : house.indices) row.indices.push_back(first + v);
+    const auto first_material = static_cast<MaterialId>(row.materials.size());
+    for (FaceId f = 0; f < house.triangle_count(); ++f) {
+      row.face_materials.push_back(first_material + house.face_material(f));
+    }
+    for (Material material : house.materials) {
+      material.texture = none;
+      row.materials.push_back(material);
+    }
+  }
+  const VertexId first = row.vertex_count();
+  const auto far = static_cast<float>(end_m);
+  for (const glm::vec3& p : {glm::vec3{0, -6, 0}, {far, -6, 0}, {far, 4, 0}, {0, 4, 0}}) {
+    row.vertices.positions.push_back(p);
+  }
+  for (const VertexId k : {0U, 1U, 2U, 0U, 2U, 3U}) row.indices.push_back(first + k);
+  row.face_materials.insert(row.face_materials.end(), 2, 0);
+  return row;
+}
+
+TEST_CASE("a street ends as a row of closed prisms, one for each house, on its ground and as high as its roof") {
+  std::array<Box, 3> boxes;
+  const Mesh row = row_of_houses(boxes);
+  const auto built = build_by_facet_shift(row);
+  REQUIRE(built.ok());
+  CHECK(compare_with_source(*built->model, row) == "");
+  REQUIRE(built->report.reached_block);
+  const Mesh street = built->model->extract(0);
+  const MeshReport found = inspect(street);
+  CHECK(found.boundary_edges == 0);
+  CHECK(found.components == 3);
+  for (const Box& box : boxes) {
+    // The faces within the house's own box are a prism.
+    Mesh one = street;
+    one.indices.clear();
+    one.face_materials.clear();
+    one.face_features.clear();
+    for (FaceId f = 0; f < street.triangle_count(); ++f) {
+      glm::dvec3 middle{0.0};
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        middle += glm::dvec3{street.vertices.positions[street.indices[3 * f + k]]} / 3.0;
+      }
+      if (middle.x < box.min.x || middle.x > box.max.x) continue;
+      const auto at = street.indices.begin() + 3 * std::ptrdiff_t{f};
+      one.indices.insert(one.indices.end(), at, at + 3);
+      one.face_materials.push_back(street.face_material(f));
+    }
+    test::check_block(one);
+    Box prism;
+    for (const VertexId v : one.indices) prism.add(glm::dvec3{one.vertices.positions[v]});
+    // Without the eaves, which reach out by less than a metre and a half; half of the roof is that high.
+    for (int k = 0; k < 2; ++k) {
+      CHECK(std::abs(prism.min[k] - box.min[k]) < 1.5);
+      CHECK(std::abs(prism.max[k] - box.max[k]) < 1.5);
+    }
+    CHECK(prism.min.z == Approx(box.min.z).margin(1e-3));
+    CHECK(prism.max.z > 0.5 * box.max.z);
+    CHECK(prism.max.z < box.max.z);
+  }
+}
+
 TEST_CASE("what is no building says so and has no block") {
   const auto built = build_by_facet_shift(test::sphere(40, 50));
   REQUIRE(built.ok());
