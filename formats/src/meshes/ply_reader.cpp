@@ -281,7 +281,7 @@ Status PlyReader::read(Body& body) {
   for (const Element& element : header_.elements) {
     if (element.properties.empty()) continue;
     if (auto good = check_counts(element); !good) return good;
-    const auto done = [&]() -> Status {
+    Status done = [&]() -> Status {
       if (element.name == "vertex" && positions_.empty()) return read_vertices(body, element);
       if (element.name == "face" || element.name == "tristrips") return read_faces(body, element);
       return skip(body, element);
@@ -299,7 +299,7 @@ Status PlyReader::read_list(Body& body, const Property& property, std::vector<do
   if (!(count >= 0.0) || count > static_cast<double>(input_.size())) {
     return Error{ErrorCode::BadData, "a list has an impossible length", body.place()};
   }
-  for (double i = 0.0; i < count; i += 1.0) {
+  for (auto left = static_cast<std::size_t>(count); left > 0; --left) {
     double value = 0.0;
     if (!body.value(property.type, value)) return ended(body);
     values.push_back(value);
