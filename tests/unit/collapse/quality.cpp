@@ -88,6 +88,51 @@ TEST_CASE("no face turns over where every place costs the same") {
   }
 }
 
+// Six times the volume that a closed surface encloses.
+double volume_of(const Mesh& mesh) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto at = [&](std::size_t c) { return glm::dvec3{mesh.vertices.positions[mesh.indices[i + c]]}; };
+    sum += glm::dot(at(0), glm::cross(at(1), at(2)));
+  }
+  return sum;
+}
+
+TEST_CASE("a closed surface keeps its volume") {
+  const Mesh mesh = test::positions_only(test::sphere(60, 90));
+  const auto result = simplify(mesh, down_to(0.1, mesh));
+  REQUIRE(result.ok());
+  const double kept = volume_of(result->mesh) / volume_of(mesh);
+  CHECK(std::fabs(kept - 1.0) < 1e-4);
+}
+
+TEST_CASE("uvs count where they are to be kept") {
+  Mesh mesh = test::grid(60, 60, 0.0F);
+  const auto look = [](const glm::vec3& p) { return glm::vec2{p.x + 0.1F * std::sin(12.0F * p.x), p.y * p.y}; };
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v) mesh.vertices.uvs[v] = look(mesh.vertices.positions[v]);
+  const auto off = [&](Attributes attributes) {
+    EdgeCollapseOptions options = down_to(0.1, mesh);
+    options.attributes = attributes;
+    const auto result = simplify(mesh, options);
+    REQUIRE(result.ok());
+    double sum = 0.0;
+    const Mesh& made = result->mesh;
+    for (std::size_t i = 0; i < made.indices.size(); i += 3) {
+      glm::vec3 place{0.0F};
+      glm::vec2 uv{0.0F};
+      for (std::size_t c = 0; c < 3; ++c) {
+        place += made.vertices.positions[made.indices[i + c]] / 3.0F;
+        uv += made.vertices.uvs[made.indices[i + c]] / 3.0F;
+      }
+      sum += glm::distance(uv, look(place));
+    }
+    return sum / made.triangle_count();
+  };
+  const double kept = off(Attributes::All), free = off(Attributes::None);
+  CAPTURE(kept, free);
+  CHECK(kept < 0.8 * free);
+}
+
 TEST_CASE("flat meshes reduce to next to nothing without error, faceted and unwelded ones too") {
   for (const Mesh& mesh : {test::grid(16, 16, 0.0F), test::unwelded(test::grid(16, 16, 0.0F))}) {
     EdgeCollapseOptions options;

@@ -16,11 +16,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-TerrainTile some_tile(double sea_level_m = NAN) {
+TerrainTile some_tile(double sea_level_m = NAN, const TileId& id = {1, 2, 1}) {
   static const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 1};
   const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {200.0}, .sea_level_m = sea_level_m});
   REQUIRE(pyramid.ok());
-  auto tile = pyramid->build({1, 2, 1});
+  auto tile = pyramid->build(id);
   REQUIRE(tile.ok());
   return *tile;
 }
@@ -52,7 +52,9 @@ std::map<std::string, std::string> tree(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("a tile comes back from its bytes as it went in") {
-  const TerrainTile tile = some_tile(0.0);
+  // North and south, east and west: normals are packed differently where they point south.
+  const TileId id = GENERATE(TileId{1, 2, 1}, TileId{1, 3, 0}, TileId{1, 0, 0});
+  const TerrainTile tile = some_tile(0.0, id);
   const std::vector<std::vector<TileRange>> below{{{4, 2, 5, 3}}, {{8, 4, 11, 7}}};
   const auto mesh = decode_quantized_mesh(encode_quantized_mesh(tile, below));
   REQUIRE(mesh.ok());
@@ -78,7 +80,44 @@ TEST_CASE("a tile comes back from its bytes as it went in") {
   for (const glm::dvec3& place_m : places_m) {
     REQUIRE(glm::distance(place_m, mesh->bounds.center) <= mesh->bounds.radius_m * 1.000001);
   }
-  CHECK(glm::length(mesh->horizon_occlusion_point) > 1.0);
+}
+
+TEST_CASE("where the globe hides a tile's horizon occlusion point it hides the tile, and not much earlier") {
+  constexpr glm::dvec3 radii_m{6378137.0, 6378137.0, 6356752.3142451793};
+  const FormulaHeights source{test::ranges_m, {10.0, 10.0, 80.0, 50.0}, 4};
+  const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {400.0}});
+  REQUIRE(pyramid.ok());
+  // As clients ask, in units of the ellipsoid's radii.
+  const auto hidden = [](const glm::dvec3& eye, const glm::dvec3& point) {
+    const double beyond = glm::dot(eye, eye) - 1.0;
+    const glm::dvec3 way = point - eye;
+    const double along = -glm::dot(way, eye);
+    return along > beyond && along * along > beyond * glm::dot(way, way);
+  };
+  for (const TileId& id : {TileId{2, 5, 2}, TileId{3, 9, 5}, TileId{4, 20, 11}}) {
+    const auto tile = pyramid->build(id);
+    REQUIRE(tile.ok());
+    const auto mesh = decode_quantized_mesh(encode_quantized_mesh(*tile));
+    REQUIRE(mesh.ok());
+    std::vector<glm::dvec3> places;
+    for (const glm::dvec3& place_m : ecef_positions_m(*tile)) {
+      const glm::dvec3 scaled = place_m / radii_m;
+      places.push_back(scaled * std::max(1.0, 1.0 / glm::length(scaled)));  // as if what is below the sea were on it
+    }
+    int both = 0, early = 0;
+    for (int i = 0; i < 400; ++i) {
+      const double z = -1.0 + (i + 0.5) / 200.0, around = 2.399963 * i, out = 1.0 + 0.002 * (1 << i % 10);
+      const glm::dvec3 eye =
+          out * glm::dvec3{std::sqrt(1.0 - z * z) * std::cos(around), std::sqrt(1.0 - z * z) * std::sin(around), z};
+      const bool all = std::all_of(places.begin(), places.end(), [&](const auto& p) { return hidden(eye, p); });
+      const bool point = hidden(eye, mesh->horizon_occlusion_point);
+      if (point) CHECK(all);
+      both += point && all ? 1 : 0;
+      early += all && !point ? 1 : 0;
+    }
+    CHECK(both > 100);
+    CHECK(early < both / 4);
+  }
 }
 
 TEST_CASE("every cut of a tile is refused, and changed bytes never give indices out of range") {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <lodestone/terrain_files.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <mutex>
 #include <tuple>
 
+#include "data.h"
 #include "heights.h"
 
 using namespace lodestone;
@@ -86,14 +89,15 @@ int mismatches(const std::vector<BorderEdge>& mine, const std::vector<BorderEdge
   return count;
 }
 
-// A few tiles around the globe's seam and at a pole; made once.
-const Tiles& world() {
+// A whole globe; planned and made once.
+const TerrainPyramid& world_pyramid() {
   static const FormulaHeights source{test::ranges_m, {-180.0, -90.0, 180.0, 90.0}, 2};
-  static const Tiles tiles = [] {
-    const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {100.0}});
-    REQUIRE(pyramid.ok());
-    return build_all(*pyramid);
-  }();
+  static const auto pyramid = TerrainPyramid::plan(source, {.max_error_m = {100.0}});
+  REQUIRE(pyramid.ok());
+  return *pyramid;
+}
+const Tiles& world() {
+  static const Tiles tiles = build_all(world_pyramid());
   return tiles;
 }
 
@@ -213,7 +217,10 @@ TEST_CASE("tiles with voids leave them out and still share their borders") {
   CHECK(tiles.count({0, 0, 0}) == 1);
 }
 
-TEST_CASE("the gap between borders of unequal zooms is within the stated bound") {
+TEST_CASE("the gap between borders of unequal zooms is within the bound that the report states") {
+  const auto report = write_terrain(world_pyramid(), test::scratch_folder("gaps"), {});
+  REQUIRE(report.ok());
+  CHECK(report->zooms[0].gap_bound_m == 0.0);
   double most_ratio = 0.0;
   for (const auto& [key, tile] : world()) {
     const auto [zoom, y, x] = key;
@@ -226,12 +233,15 @@ TEST_CASE("the gap between borders of unequal zooms is within the stated bound")
       const double v0 = of.v[of.west[k]], v1 = of.v[of.west[k + 1]];
       return std::lerp(of.height_m(of.west[k]), of.height_m(of.west[k + 1]), (at - v0) / (v1 - v0));
     };
-    const double bound_m = 100.0 * (std::exp2(2 - static_cast<int>(zoom)) + std::exp2(3 - static_cast<int>(zoom))) +
-                           0.5 * (tile.snap_m + parent.snap_m) + tile.border_detail_m;
+    const double own_bound_m = 100.0 * (std::exp2(2 - static_cast<int>(zoom)) + std::exp2(3 - static_cast<int>(zoom))) +
+                               0.5 * (tile.snap_m + parent.snap_m) + tile.border_detail_m;
+    const double bound_m = report->zooms[zoom].gap_bound_m;
+    CHECK(own_bound_m <= bound_m * (1.0 + 1e-12));  // which is that of the worst border
+    CHECK(bound_m < 3000.0);
     for (int i = 0; i <= 4096; ++i) {
       const double v = i * 32767.0 / 4096.0;
       const double gap_m = std::fabs(line(tile, v) - line(parent, 0.5 * v + (y % 2 == 0 ? 0.0 : 0.5 * 32767.0)));
-      most_ratio = std::max(most_ratio, gap_m / bound_m);
+      most_ratio = std::max(most_ratio, gap_m / own_bound_m);
     }
   }
   CHECK(most_ratio <= 1.0);
@@ -294,6 +304,10 @@ TEST_CASE("shared borders are one line on all zooms: no gap between unequal zoom
   }
   CHECK(compared > 3000);
   CHECK(most_gap_m < 1e-8);
+  if (plain) return;
+  const auto report = write_terrain(*pyramid, test::scratch_folder("shared"), {});
+  REQUIRE(report.ok());
+  for (const TerrainZoomSummary& zoom : report->zooms) CHECK(zoom.gap_bound_m == 0.0);
 }
 
 TEST_CASE("a pyramid's graph is valid and cuts show every part of the globe once, finer where the eye is") {
