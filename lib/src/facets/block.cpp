@@ -52,11 +52,11 @@ TriangleBvh coarse_tree(const Mesh& mesh, double area) {
   return TriangleBvh{mesh.vertices.positions, indices};
 }
 
-double farthest_m(const Mesh& mesh, const SurfaceSampler& sampler, const TriangleBvh& tree) {
+double farthest_m(std::span<const glm::vec3> corners, const SurfaceSampler& sampler, const TriangleBvh& tree) {
   double farthest = 0.0;
   std::uint32_t hint = none;
-  for (const VertexId v : mesh.indices) {
-    const auto nearest = tree.nearest(glm::dvec3{mesh.vertices.positions[v]}, hint);
+  for (const glm::vec3& corner : corners) {
+    const auto nearest = tree.nearest(glm::dvec3{corner}, hint);
     hint = nearest.slot;
     farthest = std::max(farthest, nearest.squared_distance);
   }
@@ -114,7 +114,7 @@ Block::Block(const FacetMesh& mesh) : houses_(tell_houses(mesh)) {
     if (!sentence_.empty()) return;
     add_prism(footprint, 0);
   }
-  measure(*mesh.source);
+  measure(mesh);
   choose_materials(mesh);
 }
 
@@ -191,15 +191,21 @@ bool Block::needs(const FacetMesh& mesh, std::span<const FaceId> faces) const no
   return exists() && (mesh.live_faces <= face_count() + faces.size() || lacks(walls_) || lacks(roofs_));
 }
 
-void Block::measure(const Mesh& source) {
+void Block::measure(const FacetMesh& mesh) {
+  const Mesh& source = *mesh.source;
+  std::vector<glm::vec3> corners;
+  for (std::uint32_t p = 0; p < mesh.point_count(); ++p) {
+    if (!mesh.faces_of[p].empty()) corners.push_back(mesh.place[p]);
+  }
   std::vector<VertexId> indices;
   for (const Triangle& t : triangles_) indices.insert(indices.end(), t.corner.begin(), t.corner.end());
   const Mesh prism = mesh_of(corners_, indices);
   const SurfaceSampler of_source{source};
   const SurfaceSampler of_prism{prism};
-  const double there_m = farthest_m(source, of_source, TriangleBvh{prism.vertices.positions, prism.indices});
-  const double back_m = farthest_m(prism, of_prism, coarse_tree(source, of_source.area()));
-  error_m_ = std::max(there_m, back_m);
+  const double there_m = farthest_m(corners, of_source, TriangleBvh{prism.vertices.positions, prism.indices});
+  const double back_m = farthest_m(corners_, of_prism, coarse_tree(source, of_source.area()));
+  // Points may lie off their vertices by the tolerance for welding.
+  error_m_ = std::max(there_m, back_m) + (mesh.deviation_m.empty() ? 0.0 : double{mesh.deviation_m.front()});
   if (std::isfinite(error_m_)) return;
   triangles_.clear();
   sentence_ = "its shape cannot be compared with a block";

@@ -39,7 +39,7 @@ class Block {
   };
   class Caster;
   void add_prism(const Footprint& footprint, std::uint32_t house);
-  void measure(const Mesh& source);
+  void measure(const FacetMesh& mesh);
   void choose_materials(const FacetMesh& mesh);
 
   Houses houses_;

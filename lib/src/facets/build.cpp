@@ -120,11 +120,12 @@ class Builder {
   CrossingFinder crossings_;
   Kinds kinds_;
   Kinds::Errand errand_;
-  std::uint32_t led_at_ = none;                                // records there were when kinds were told apart
+  std::optional<std::uint64_t> led_at_;                        // edits there had been when kinds were told apart
   std::vector<std::uint8_t> offered_;                          // per point
   std::set<std::pair<std::uint32_t, std::uint32_t>> refused_;  // slides, at this price
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
+  std::vector<std::uint32_t> surfaces_;      // with faces left
   std::array<std::vector<Known>, 2> known_;  // per direction and surface
   FacetShiftReport report_;
   std::optional<Openings> openings_;
@@ -220,10 +221,11 @@ std::uint32_t Builder::follow(double error_m) {
 
 // Tells anew which parts are alike. What led or was alone and follows now waits; what is on its own again is looked at.
 void Builder::lead_kinds() {
-  if (led_at_ == log_.record_count()) return;
-  led_at_ = log_.record_count();
+  if (led_at_ == mesh_.edits) return;
+  led_at_ = mesh_.edits;
   if (options_.order == ShiftOrder::OneByOne) {
     parts_.split();
+    crossings_.update(mesh_.touched);
     crossings_.start();
     mesh_.touched.clear();
     kinds_.update(parts_.parts());
@@ -315,10 +317,15 @@ bool Builder::shift_planes(double price) {
   };
   std::vector<Offer> offers;
   planner_.begin_round();
-  for (std::uint32_t s = 0; s < mesh_.surface_faces.size() && !context_.cancelled(); ++s) {
-    if (!is_due(s, price)) continue;
+  std::erase_if(surfaces_, [&](std::uint32_t s) {
+    if (mesh_.faces[mesh_.surface_faces[s].front()].live) return false;
     std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
-    if (mesh_.surface_faces[s].empty() || kinds_.follows(mesh_.faces[mesh_.surface_faces[s].front()])) continue;
+    return mesh_.surface_faces[s].empty();
+  });
+  for (const std::uint32_t s : surfaces_) {
+    if (context_.cancelled()) break;
+    if (!is_due(s, price) || kinds_.follows(mesh_.faces[mesh_.surface_faces[s].front()])) continue;
+    std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
     const std::uint64_t version = version_of(s);
     if (!is_stale(s, version, price)) continue;
     const bool moves = planner_.look_at(s) && !kinds_.follows(planner_.first_point());
@@ -449,6 +456,9 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   }
   openings_.emplace(mesh_, outline(mesh_, live).empty());
   for (auto& known : known_) known.resize(mesh_.surface_faces.size());
+  for (std::uint32_t s = 0; s < mesh_.surface_faces.size(); ++s) {
+    if (!mesh_.surface_faces[s].empty()) surfaces_.push_back(s);
+  }
   lead_kinds();
   double area = 0.0;
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) area += s.area_m2;
@@ -466,6 +476,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
       any = shift_planes(price);
     }
     if (!done()) vanish_parts(price);
+    crossings_.update(mesh_.touched);
     crossings_.start();
     mesh_.touched.clear();
     context_.report("facet shift",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 namespace lodestone::facets {
@@ -59,11 +60,26 @@ bool cross(const Piece& a, const Piece& b) {
 }  // namespace
 
 CrossingFinder::CrossingFinder(const FacetMesh& mesh, const PartFinder& parts)
-    : mesh_(mesh), parts_(parts), index_(mesh) {
+    : mesh_(mesh), parts_(parts), index_(mesh), boxes_(mesh.faces.size()) {
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) measure(f);
   start();
 }
 
+void CrossingFinder::measure(FaceId f) {
+  const Face& face = mesh_.faces[f];
+  if (!face.live) {
+    boxes_[f] = {glm::vec3{std::numeric_limits<float>::infinity()}, glm::vec3{-std::numeric_limits<float>::infinity()}};
+    return;
+  }
+  const glm::vec3& a = mesh_.place[face.point[0]];
+  const glm::vec3& b = mesh_.place[face.point[1]];
+  const glm::vec3& c = mesh_.place[face.point[2]];
+  boxes_[f] = {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+}
+
 void CrossingFinder::start() {
+  if (edits_ == mesh_.edits) return;
+  edits_ = mesh_.edits;
   index_.clear();
   for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
     if (mesh_.faces[f].live && parts_.part_of(f).size() > small_part) index_.put(f);
@@ -72,6 +88,7 @@ void CrossingFinder::start() {
 
 void CrossingFinder::update(const std::vector<FaceId>& faces) {
   for (const FaceId f : faces) {
+    measure(f);
     if (!mesh_.faces[f].live) {
       index_.take(f);
     } else if (parts_.part_of(f).size() > small_part) {
@@ -113,14 +130,9 @@ bool CrossingFinder::makes_crossing(const Moved& moved) const {
     const glm::vec3 low{all.low};
     const glm::vec3 high{all.high};
     const auto is_near = [&](FaceId g) {
-      const Face& face = mesh_.faces[g];
-      const glm::vec3& a = mesh_.place[face.point[0]];
-      const glm::vec3& b = mesh_.place[face.point[1]];
-      const glm::vec3& c = mesh_.place[face.point[2]];
-      const auto apart = [&](int k) {
-        return std::max({a[k], b[k], c[k]}) < low[k] || std::min({a[k], b[k], c[k]}) > high[k];
-      };
-      return face.live && !apart(0) && !apart(1) && !apart(2);
+      const Box& box = boxes_[g];
+      return box.low.x <= high.x && box.high.x >= low.x && box.low.y <= high.y && box.high.y >= low.y &&
+             box.low.z <= high.z && box.high.z >= low.z;
     };
     bool found = false;
     const std::vector<FaceId>& part = parts_.part_of(first);

@@ -2,6 +2,7 @@
 // Whether surfaces would pass through each other.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "facets/face_index.h"
@@ -16,15 +17,21 @@ class CrossingFinder {
  public:
   CrossingFinder(const FacetMesh& mesh, const PartFinder& parts);
 
-  // To be called when the parts were found anew, and for faces that moved or went since.
-  void start();
+  // To be called for faces that moved or went, and when the parts were found anew.
   void update(const std::vector<FaceId>& faces);
+  void start();
   [[nodiscard]] bool makes_crossing(const Moved& moved) const;
 
  private:
   const FacetMesh& mesh_;
   const PartFinder& parts_;
   FaceIndex index_;  // of the faces of large parts; small ones are walked through
+  struct Box {
+    glm::vec3 low{0.0F}, high{0.0F};
+  };
+  std::optional<std::uint64_t> edits_;  // there had been at the last start
+  void measure(FaceId f);
+  std::vector<Box> boxes_;  // per face; of dead ones beyond everything
 };
 
 }  // namespace lodestone::facets

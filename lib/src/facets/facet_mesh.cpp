@@ -199,6 +199,7 @@ class Editor {
   }
 
   void relink(float error_m) {
+    ++mesh_.edits;
     mesh_.touched.insert(mesh_.touched.end(), dead_.begin(), dead_.end());
     mesh_.touched.insert(mesh_.touched.end(), alive_.begin(), alive_.end());
     for (const FaceId f : dead_) {
@@ -352,6 +353,7 @@ VertexId middle_one(const FacetMesh& mesh, std::span<const VertexId> vertices) {
 // Takes the faces away; returns the vertices that nothing uses any more, ascending.
 std::vector<VertexId> take_away(FacetMesh& mesh, std::span<const FaceId> faces, progressive::EditLog& log) {
   std::vector<VertexId> vertices;
+  ++mesh.edits;
   mesh.touched.insert(mesh.touched.end(), faces.begin(), faces.end());
   for (const FaceId f : faces) {
     Face& face = mesh.faces[f];

@@ -46,6 +46,7 @@ struct FacetMesh {
   Looks looks;
   std::uint32_t live_faces = 0;
   std::vector<std::uint32_t> live_of_material;
+  std::uint64_t edits = 0;      // how many there were
   std::vector<FaceId> touched;  // moved, redrawn or gone since somebody emptied it
 
   [[nodiscard]] std::uint32_t point_count() const noexcept { return static_cast<std::uint32_t>(place.size()); }

@@ -49,10 +49,19 @@ class Shape {
     const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3{0, 0, 1} : glm::dvec3{1, 0, 0};
     u_ = glm::normalize(glm::cross(helper, normal));
     v_ = glm::cross(normal, u_);
-    for (const std::uint32_t p : opening.loop) corners_.push_back(flat(mesh.at(p)));
+    for (const std::uint32_t p : opening.loop) {
+      corners_.push_back(flat(mesh.at(p)));
+      low_ = glm::min(low_, corners_.back());
+      high_ = glm::max(high_, corners_.back());
+    }
   }
 
-  [[nodiscard]] bool contains(const glm::dvec3& at, double margin) const { return outside_m(at) <= margin; }
+  [[nodiscard]] bool contains(const glm::dvec3& at, double margin) const {
+    const glm::dvec2 p = flat(at);
+    if (p.x < low_.x - margin || p.y < low_.y - margin || p.x > high_.x + margin || p.y > high_.y + margin)
+      return false;
+    return outside_m(at) <= margin;
+  }
   // How far it is from the polygon, 0 inside.
   [[nodiscard]] double outside_m(const glm::dvec3& at) const {
     const glm::dvec2 p = flat(at);
@@ -73,6 +82,7 @@ class Shape {
   [[nodiscard]] glm::dvec2 flat(const glm::dvec3& p) const { return {glm::dot(u_, p), glm::dot(v_, p)}; }
   glm::dvec3 u_, v_;
   std::vector<glm::dvec2> corners_;
+  glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
 };
 
 double area(const FacetMesh& mesh, FaceId f) { return 0.5 * glm::length(mesh.area_vector(mesh.faces[f])); }
@@ -263,15 +273,21 @@ std::vector<FaceId> sides_of(const FacetMesh& mesh, const Opening& opening, cons
 // What stands in the opening becomes one pane in the plane of the wall, drawn between the corners of the hole: the pane
 // comes forward and hides the rest. Empty if the opening is not covered, if something holds it from outside, or if it
 // is flush.
-std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price) {
+std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price, double& least_key) {
   const Plane plane = plane_of(mesh_, opening);
   const Shape shape{mesh_, opening, plane.normal};
   std::vector<FaceId> content;
-  const auto stands_in = [&](std::uint32_t p) {
-    const double h = plane.height(mesh_.at(p));
-    return h > -most_depth_m && h < most_height_m && shape.contains(mesh_.at(p), margin_m);
-  };
   ++look_;
+  // Asked of each point for all faces around it.
+  const auto stands_in = [&](std::uint32_t p) {
+    Asked& asked = asked_[p];
+    if (asked.look != look_) {
+      const glm::dvec3 at = mesh_.at(p);
+      const double h = plane.height(at);
+      asked = {look_, h > -most_depth_m && h < most_height_m && shape.contains(at, margin_m)};
+    }
+    return asked.stands_in;
+  };
   cells_.visit_points(box_of(opening), [&](std::uint32_t p) {
     if (!stands_in(p)) return;
     for (const FaceId f : mesh_.faces_of[p]) {
@@ -306,7 +322,7 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
     }
   }
   if (is_sewn(mesh_, opening, content)) return std::nullopt;
-  auto pane = pane_of(opening, plane.normal, content, 0.0, price);
+  auto pane = pane_of(opening, plane.normal, content, 0.0, price, least_key);
   // The pane hides what one saw through an open sash.
   const double open_m2 = opening.area_m2 - std::max(front, back);
   if (pane && open_m2 > (1.0 - covered) * opening.area_m2) {
@@ -316,7 +332,7 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
     pane->error_m = std::max(pane->error_m, size_m);
   }
   if (closed_) return pane;
-  auto behind = recess(opening, plane.normal, content, price);
+  auto behind = recess(opening, plane.normal, content, price, least_key);
   if (!pane || !behind) return pane ? std::move(pane) : std::move(behind);
   // Of two that are worth their price, the one that saves more of it.
   const auto saving = [&](const OpeningJob& j) { return price * static_cast<double>(j.patch.gone.size()) - j.cost; };
@@ -326,7 +342,7 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
 // Bars, frames and whatever else stands in the opening give way to a pane at the depth of one of its faces; the sides
 // of the opening stay. Empty if that is hardly behind the wall.
 std::optional<OpeningJob> Openings::recess(const Opening& opening, const glm::dvec3& normal,
-                                           const std::vector<FaceId>& content, double price) const {
+                                           const std::vector<FaceId>& content, double price, double& least_key) const {
   const Plane plane = plane_of(mesh_, opening);
   const std::vector<FaceId> sides = sides_of(mesh_, opening, plane, content);
   std::vector<FaceId> inside;
@@ -350,14 +366,16 @@ std::optional<OpeningJob> Openings::recess(const Opening& opening, const glm::dv
     depth_m = own_m;
   }
   if (depth_m < least_depth_m) return std::nullopt;
-  auto job = pane_of(opening, normal, inside, depth_m, price);
+  auto job = pane_of(opening, normal, inside, depth_m, price, least_key);
   if (job) job->kind = OpeningJob::Kind::Recess;
   return job;
 }
 
-// So far behind the wall; with a frame as long as that is worth its faces.
+// So far behind the wall; with a frame as long as that is worth its faces. Not drawn if it would cost more than the
+// price whatever it looks like: then least_key is what it costs at least.
 std::optional<OpeningJob> Openings::pane_of(const Opening& opening, const glm::dvec3& normal,
-                                            const std::vector<FaceId>& content, double depth_m, double price) const {
+                                            const std::vector<FaceId>& content, double depth_m, double price,
+                                            double& least_key) const {
   const Plane plane = plane_of(mesh_, opening);
   const Shape shape{mesh_, opening, normal};
   OpeningJob job{.kind = OpeningJob::Kind::Flatten};
@@ -372,6 +390,10 @@ std::optional<OpeningJob> Openings::pane_of(const Opening& opening, const glm::d
       away[k] = depth_m == 0.0 ? height_m : farthest_m;
     }
     job.cost += area(mesh_, f) * mean_square(away[0], away[1], away[2]);
+  }
+  if (const double key = job.cost / static_cast<double>(content.size()); key > price) {
+    least_key = std::min(least_key, key);
+    return std::nullopt;
   }
   const OpeningView view{mesh_, opening.loop, normal, content};
   // Behind the wall it may hardly stand where there was nothing.
@@ -462,7 +484,12 @@ double key_of(const std::optional<OpeningJob>& job) {
 }  // namespace
 
 Openings::Openings(const FacetMesh& mesh, bool closed)
-    : mesh_(mesh), closed_(closed), walls_(mesh), cells_(mesh), looked_at_(mesh.faces.size(), 0) {}
+    : mesh_(mesh),
+      closed_(closed),
+      walls_(mesh),
+      cells_(mesh),
+      looked_at_(mesh.faces.size(), 0),
+      asked_(mesh.point_count()) {}
 
 void Openings::update() { cells_.update(walls_.update()); }
 
@@ -490,9 +517,10 @@ std::optional<OpeningJob> Openings::job(const Opening& opening, double price, do
   for (const std::uint32_t p : opening.loop) state = 31 * state + mesh_.version[p];
   Known& known = known_[opening.loop];
   if (known.state == state && known.key > price) return std::nullopt;
-  auto pane = flatten(opening, price);
+  double least_key = std::numeric_limits<double>::infinity();
+  auto pane = flatten(opening, price, least_key);
   auto closing = fill(mesh_, opening);
-  known = {state, std::min(key_of(pane), key_of(closing))};
+  known = {state, std::min({key_of(pane), key_of(closing), least_key})};
   const auto fits = [&](const auto& job) { return job && job->key() <= price && job->error_m <= most_error_m; };
   if (fits(pane)) return pane;
   if (fits(closing)) return closing;

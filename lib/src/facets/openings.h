@@ -46,12 +46,13 @@ class Openings {
     std::uint64_t state = 0;  // of the outline and of what is near
     double key = 0.0;
   };
-  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price);
+  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price, double& least_key);
   [[nodiscard]] std::optional<OpeningJob> pane_of(const Opening& opening, const glm::dvec3& normal,
-                                                  const std::vector<FaceId>& content, double depth_m,
-                                                  double price) const;
+                                                  const std::vector<FaceId>& content, double depth_m, double price,
+                                                  double& least_key) const;
   [[nodiscard]] std::optional<OpeningJob> recess(const Opening& opening, const glm::dvec3& normal,
-                                                 const std::vector<FaceId>& content, double price) const;
+                                                 const std::vector<FaceId>& content, double price,
+                                                 double& least_key) const;
   [[nodiscard]] PointCells::Box box_of(const Opening& opening) const;
 
   const FacetMesh& mesh_;
@@ -60,6 +61,11 @@ class Openings {
   PointCells cells_;
   std::map<std::vector<std::uint32_t>, Known> known_;  // by outline
   std::vector<std::uint32_t> looked_at_;               // per face
+  struct Asked {
+    std::uint32_t look = 0;
+    bool stands_in = false;
+  };
+  std::vector<Asked> asked_;  // per point
   std::uint32_t look_ = 0;
 };
 

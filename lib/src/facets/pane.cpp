@@ -106,17 +106,15 @@ class PaneMaker {
   // Points that only the content uses become these corners; none if there are too few.
   std::vector<Corner> take_points(const std::vector<glm::dvec3>& corners) {
     std::vector<std::uint32_t> points;
-    for (const FaceId f : site_.content) {
-      for (const std::uint32_t p : mesh_.faces[f].point) {
-        const auto& around = mesh_.faces_of[p];
-        if (std::all_of(around.begin(), around.end(), [&](FaceId g) { return is_content(g); })) points.push_back(p);
-      }
-    }
+    for (const FaceId f : site_.content)
+      points.insert(points.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
     std::erase_if(points, [&](std::uint32_t p) {
+      const auto& around = mesh_.faces_of[p];
       return std::find(site_.opening.loop.begin(), site_.opening.loop.end(), p) != site_.opening.loop.end() ||
-             std::any_of(patch_.moved.begin(), patch_.moved.end(), [p](const auto& m) { return m.first == p; });
+             std::any_of(patch_.moved.begin(), patch_.moved.end(), [p](const auto& m) { return m.first == p; }) ||
+             !std::all_of(around.begin(), around.end(), [&](FaceId g) { return is_content(g); });
     });
     if (points.size() < corners.size()) return {};
     std::vector<Corner> taken;

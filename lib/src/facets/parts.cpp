@@ -29,6 +29,8 @@ PartFinder::PartFinder(const FacetMesh& mesh)
 
 // Faces that hang together by points.
 void PartFinder::split() {
+  if (edits_ == mesh_.edits) return;
+  edits_ = mesh_.edits;
   DisjointSets sets{mesh_.point_count()};
   for (const Face& f : mesh_.faces) {
     if (!f.live) continue;
@@ -246,18 +248,20 @@ std::vector<Part> PartFinder::find(double limit_m, double price) {
   split();
   std::vector<Part> found;
   if (parts_.size() < 2) return found;
-  const std::uint32_t largest = largest_part();
-  bool ready = false;
+  std::uint32_t largest = none;  // told when the first part is to be measured
   for (std::uint32_t id = 0; id < parts_.size(); ++id) {
     const std::vector<FaceId>& faces = parts_[id];
-    if (id == largest || faces.size() > most_part_faces) continue;
+    if (faces.size() > most_part_faces) continue;
     Known& known = known_[faces.front()];
-    const std::uint64_t state = state_of(faces);
     // A part that has lost faces since costs more for each of those left.
     if (known.key > price) continue;
+    if (largest == none) {
+      largest = largest_part();
+      around_.update(parts_, part_of_);
+    }
+    if (id == largest) continue;
+    const std::uint64_t state = state_of(faces);
     if (known.state != state) known = {.state = state, .key = known.key};
-    if (!ready) around_.update(part_of_);
-    ready = true;
     id_ = id;
     if (known.measured && known.support_state == support_state(known.part)) {
       part_ = known.part;

@@ -2,6 +2,7 @@
 // Detached parts that lie on, in or near the rest: frames, bars, railings, pipes, antennas.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "facets/facet_mesh.h"
@@ -67,6 +68,7 @@ class PartFinder {
   Surroundings around_;
   std::vector<std::uint32_t> part_of_;      // per face
   std::vector<std::vector<FaceId>> parts_;  // faces, ascending
+  std::optional<std::uint64_t> edits_;      // there had been when they were found
   std::vector<Known> known_;                // per face: of the part whose first face it is
 
   struct Middle {

@@ -20,6 +20,7 @@ class Painter {
     for (const Placed& p : patch_.placed) place(p);
     remove_unused();
     log_.end();
+    ++mesh_.edits;
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const std::uint32_t p : touched_) {

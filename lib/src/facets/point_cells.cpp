@@ -33,9 +33,13 @@ void PointCells::sort_points() {
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   points_.resize(first_.back());
+  at_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::uint32_t p = 0; p < mesh_.point_count(); ++p) {
-    if (!mesh_.faces_of[p].empty()) points_[next[cell[p]]++] = p;
+    if (mesh_.faces_of[p].empty()) continue;
+    const std::uint32_t i = next[cell[p]]++;
+    points_[i] = p;
+    at_[i] = mesh_.place[p];
   }
 }
 

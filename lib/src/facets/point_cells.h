@@ -30,12 +30,12 @@ class PointCells {
   void update(const std::vector<FaceId>& changed);
   [[nodiscard]] std::uint64_t last_change(const Box& box) const;
 
-  // Calls visit(point) for all points in the box that were there or near at the last update.
+  // Calls visit(point) for all points that were in the box at the last update.
   template <class Visit>
   void visit_points(const Box& box, Visit visit) const {
     visit_cells(box, [&](std::size_t cell) {
       for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
-        if (box.contains(mesh_.place[points_[i]])) visit(points_[i]);
+        if (box.contains(at_[i])) visit(points_[i]);
       }
     });
   }
@@ -68,6 +68,7 @@ class PointCells {
   glm::ivec3 count_{1};
   std::vector<std::uint32_t> first_;       // per cell and one past the end
   std::vector<std::uint32_t> points_;      // by cell
+  std::vector<glm::vec3> at_;              // of these, where they were at the last update
   std::vector<std::uint32_t> changed_at_;  // per cell
   std::vector<glm::vec3> seen_at_;         // per point, at the last update
   std::uint32_t now_ = 0;

@@ -7,78 +7,147 @@
 namespace lodestone::facets {
 namespace {
 
-constexpr std::size_t most_young = 4;  // the old tree stands until one face in so many has changed
+constexpr std::size_t most_young = 4;     // the old tree stands until one face in so many has changed
+constexpr std::size_t small_part = 64;    // faces; of larger parts each face has a box of its own
+constexpr std::size_t bundle_faces = 16;  // of a small part
 
 }  // namespace
 
 bool Surroundings::stands(FaceId f) const { return mesh_.faces[f].live && state_[f] == mesh_.state_of(f); }
 
-void Surroundings::plant(Grove& grove, std::vector<FaceId> faces) const {
-  std::vector<VertexId> indices;
-  indices.reserve(3 * faces.size());
+void Surroundings::add_bundle(Grove& grove, std::span<const FaceId> faces) const {
+  Bundle bundle;
+  bundle.first = static_cast<std::uint32_t>(grove.slots.size());
+  bundle.count = static_cast<std::uint32_t>(faces.size());
   for (const FaceId f : faces) {
-    indices.insert(indices.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+    Slot slot;
+    slot.face = f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      slot.corner[k] = mesh_.place[mesh_.faces[f].point[k]];
+      bundle.box.add(slot.corner[k]);
+    }
+    grove.slots.push_back(slot);
   }
-  grove.tree = TriangleBvh{mesh_.place, indices};
-  grove.faces = std::move(faces);
+  grove.bundles.push_back(bundle);
 }
 
-void Surroundings::update(const std::vector<std::uint32_t>& part_of) {
+void Surroundings::plant(Grove& grove) const {
+  // A triangle across each box has that box.
+  std::vector<glm::vec3> ends;
+  std::vector<VertexId> indices;
+  ends.reserve(2 * grove.bundles.size());
+  indices.reserve(3 * grove.bundles.size());
+  for (const Bundle& bundle : grove.bundles) {
+    const auto first = static_cast<VertexId>(ends.size());
+    ends.insert(ends.end(), {bundle.box.low, bundle.box.high});
+    indices.insert(indices.end(), {first, first + 1, first});
+  }
+  grove.tree = TriangleBvh{ends, indices};
+}
+
+void Surroundings::update(const std::vector<std::vector<FaceId>>& parts, const std::vector<std::uint32_t>& part_of) {
+  if (edits_ == mesh_.edits) return;
+  edits_ = mesh_.edits;
+  part_of_ = &part_of;
   state_.resize(mesh_.faces.size(), 0);
-  std::vector<FaceId> live;
-  std::vector<FaceId> young;
-  for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
-    if (!mesh_.faces[f].live) continue;
-    live.push_back(f);
-    if (!stands(f)) young.push_back(f);
+  std::size_t live_count = 0;
+  std::size_t young_count = 0;
+  for (const auto& faces : parts) {
+    live_count += faces.size();
+    young_count +=
+        static_cast<std::size_t>(std::count_if(faces.begin(), faces.end(), [&](FaceId f) { return !stands(f); }));
   }
-  if (most_young * young.size() > live.size() || 2 * live.size() < old_.faces.size()) {
-    std::fill(state_.begin(), state_.end(), 0);
-    for (const FaceId f : live) state_[f] = mesh_.state_of(f);
-    plant(old_, std::move(live));
-    young.clear();
-  }
-  plant(young_, std::move(young));
-  std::vector<std::uint32_t> part;
-  for (Grove* grove : {&old_, &young_}) {
-    part.resize(grove->faces.size());
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const FaceId f = grove->faces[i];
-      part[i] = grove == &young_ || stands(f) ? part_of[f] : none;
+  const auto gather = [&](Grove& grove, auto wanted) {
+    grove = {};
+    std::vector<FaceId> some;
+    for (const auto& faces : parts) {
+      some.clear();
+      const std::size_t most = faces.size() > small_part ? 1 : bundle_faces;
+      for (const FaceId f : faces) {
+        if (!wanted(f)) continue;
+        some.push_back(f);
+        if (some.size() < most) continue;
+        add_bundle(grove, some);
+        some.clear();
+      }
+      if (!some.empty()) add_bundle(grove, some);
     }
-    grove->tree.set_labels(part);
+    plant(grove);
+  };
+  if (most_young * young_count > live_count || 2 * live_count < old_.slots.size()) {
+    std::fill(state_.begin(), state_.end(), 0);
+    for (const auto& faces : parts) {
+      for (const FaceId f : faces) state_[f] = mesh_.state_of(f);
+    }
+    gather(old_, [](FaceId) { return true; });
+    young_ = {};
+    return;
   }
+  for (Slot& slot : old_.slots) {
+    if (slot.face != none && !stands(slot.face)) slot.face = none;
+  }
+  gather(young_, [&](FaceId f) { return !stands(f); });
+}
+
+template <class Bound, class Visit>
+void Surroundings::visit(const Grove& grove, const glm::dvec3& p, std::uint32_t part, Bound bound,
+                         Visit visit_slot) const {
+  grove.tree.visit_boxes(p, bound, [&](FaceId i) {
+    const Bundle& bundle = grove.bundles[i];
+    if (bundle.box.squared_distance(p) >= bound()) return true;
+    for (std::uint32_t s = bundle.first; s < bundle.first + bundle.count; ++s) {
+      const Slot& slot = grove.slots[s];
+      if (slot.face == none) continue;
+      // All of a bundle hung together when the tree was built; they may not any more.
+      if ((*part_of_)[slot.face] == part) continue;
+      if (!visit_slot(slot)) return false;
+    }
+    return true;
+  });
 }
 
 Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t part, double limit_m,
                                             FaceId hint) const {
-  Nearest best{limit_m, none};
+  double least = limit_m * limit_m;
+  FaceId face = none;
+  const auto consider = [&](FaceId f, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const double d = squared_distance_to_triangle(p, glm::dvec3{a}, glm::dvec3{b}, glm::dvec3{c});
+    if (d >= least) return;
+    least = d;
+    face = f;
+  };
   if (hint != none) {
     const auto& q = mesh_.faces[hint].point;
-    const double d = std::sqrt(squared_distance_to_triangle(p, mesh_.at(q[0]), mesh_.at(q[1]), mesh_.at(q[2])));
-    if (d < limit_m) best = {d, hint};
+    consider(hint, mesh_.place[q[0]], mesh_.place[q[1]], mesh_.place[q[2]]);
   }
   for (const Grove* grove : {&old_, &young_}) {
-    const TriangleBvh::Nearest found = grove->tree.nearest_unlike(p, best.distance_m, part);
-    if (found.face != none) best = {std::sqrt(found.squared_distance), grove->faces[found.face]};
+    visit(
+        *grove, p, part, [&] { return least; },
+        [&](const Slot& slot) {
+          const auto& [a, b, c] = slot.corner;
+          const Box box{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+          if (box.squared_distance(p) < least) consider(slot.face, a, b, c);
+          return true;
+        });
   }
-  return best.face == none ? Nearest{} : best;
+  return face == none ? Nearest{} : Nearest{std::sqrt(least), face};
 }
 
 bool Surroundings::lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part,
                                double limit_m) const {
   bool found = false;
+  const double bound = std::nextafter(limit_m * limit_m, std::numeric_limits<double>::infinity());
   for (const Grove* grove : {&old_, &young_}) {
-    const auto across_it = [&](FaceId i) {
-      return std::abs(glm::dot(mesh_.faces[grove->faces[i]].normal, across)) > 0.7;
-    };
-    grove->tree.within_unlike(p, limit_m, part, across_it, [&](FaceId i) {
-      const Face& face = mesh_.faces[grove->faces[i]];
-      const glm::dvec3 a = mesh_.at(face.point[0]);
-      const double d = std::sqrt(squared_distance_to_triangle(p, a, mesh_.at(face.point[1]), mesh_.at(face.point[2])));
-      found = d <= std::abs(glm::dot(p - a, face.normal)) + 1e-3;
-      return !found;
-    });
+    visit(
+        *grove, p, part, [&] { return bound; },
+        [&](const Slot& slot) {
+          const Face& face = mesh_.faces[slot.face];
+          if (!(std::abs(glm::dot(face.normal, across)) > 0.7)) return true;
+          const glm::dvec3 a{slot.corner[0]};
+          const double d2 = squared_distance_to_triangle(p, a, glm::dvec3{slot.corner[1]}, glm::dvec3{slot.corner[2]});
+          found = d2 < bound && std::sqrt(d2) <= std::abs(glm::dot(p - a, face.normal)) + 1e-3;
+          return !found;
+        });
     if (found) return true;
   }
   return false;

@@ -2,6 +2,8 @@
 // What lies around a part: nearest faces of other parts in a mesh that changes a little from one search to the next.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "facets/facet_mesh.h"
@@ -13,8 +15,9 @@ class Surroundings {
  public:
   explicit Surroundings(const FacetMesh& mesh) : mesh_(mesh) {}
 
-  // To be called when the mesh has changed. `part_of` is per face and must live as long as it is asked for.
-  void update(const std::vector<std::uint32_t>& part_of);
+  // To be called when the mesh has changed. Faces ascending by part; `part_of`, per face, must live as long as it is
+  // asked for.
+  void update(const std::vector<std::vector<FaceId>>& parts, const std::vector<std::uint32_t>& part_of);
 
   struct Nearest {
     double distance_m = std::numeric_limits<double>::infinity();
@@ -28,15 +31,44 @@ class Surroundings {
                                  double limit_m) const;
 
  private:
-  // The faces as they were when the tree was built; those that went or moved since are left out.
-  struct Grove {
-    std::vector<FaceId> faces;
-    TriangleBvh tree{{}, {}};  // labelled by part, none where a face is not there any more
+  // The faces as they were when the tree was built; those that went or moved since are left out. The tree is about
+  // boxes of few faces of one part each, so that ten thousand tiles are ten thousand things, not a hundred thousand.
+  struct Box {
+    glm::vec3 low{std::numeric_limits<float>::infinity()};
+    glm::vec3 high{-std::numeric_limits<float>::infinity()};
+    void add(const glm::vec3& p) noexcept {
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    }
+    [[nodiscard]] double squared_distance(const glm::dvec3& p) const noexcept {
+      const glm::dvec3 d = glm::max(glm::max(glm::dvec3{low} - p, p - glm::dvec3{high}), glm::dvec3{0.0});
+      return glm::dot(d, d);
+    }
   };
-  void plant(Grove& grove, std::vector<FaceId> faces) const;
+  struct Slot {
+    std::array<glm::vec3, 3> corner{};
+    FaceId face = none;  // none if it does not stand any more
+  };
+  struct Bundle {
+    Box box;
+    std::uint32_t first = 0, count = 0;  // in slots
+  };
+  struct Grove {
+    std::vector<Slot> slots;
+    std::vector<Bundle> bundles;
+    TriangleBvh tree{{}, {}};  // of the boxes
+  };
+  // Calls visit(slot) for faces of other parts in bundles nearer than bound(), the squared distance, until it returns
+  // false.
+  template <class Bound, class Visit>
+  void visit(const Grove& grove, const glm::dvec3& p, std::uint32_t part, Bound bound, Visit visit_slot) const;
+  void add_bundle(Grove& grove, std::span<const FaceId> faces) const;
+  void plant(Grove& grove) const;
   [[nodiscard]] bool stands(FaceId f) const;
 
   const FacetMesh& mesh_;
+  const std::vector<std::uint32_t>* part_of_ = nullptr;
+  std::optional<std::uint64_t> edits_;  // there had been at the last update
   Grove old_, young_;
   std::vector<std::uint64_t> state_;  // per face when old_ was planted, 0 if it is not in it
 };

@@ -97,6 +97,8 @@ void Walls::find_openings(Wall& wall) const {
 
 const std::vector<FaceId>& Walls::update() {
   changed_.clear();
+  if (edits_ == mesh_.edits) return changed_;
+  edits_ = mesh_.edits;
   for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
     const std::uint64_t state = mesh_.faces[f].live ? mesh_.state_of(f) : 0;
     if (state == state_[f]) continue;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "facets/facet_mesh.h"
@@ -43,6 +44,7 @@ class Walls {
   std::vector<std::uint32_t> wall_of_;  // per face
   std::vector<std::uint64_t> state_;    // per face at the last update, 0 if dead
   std::vector<FaceId> changed_;
+  std::optional<std::uint64_t> edits_;  // there had been at the last update
 };
 
 }  // namespace lodestone::facets

@@ -53,26 +53,22 @@ class TriangleBvh {
         p, limit, [&](std::uint32_t slot) { return wanted(faces_[slot]); }, [](std::uint32_t) { return false; });
   }
 
-  // Gives every face a label; `none` takes it out of nearest_unlike() and within_unlike(). O(n).
+  // Gives every face a label; `none` takes it out of nearest_unlike(). O(n).
   void set_labels(std::span<const std::uint32_t> label_of_face);
 
-  // As nearest_of() and within() among the faces with a label other than this one. What is all of this label, however
+  // As nearest_of() among the faces with a label other than this one. What is all of this label, however
   // near, is passed over as a whole. Precondition: set_labels().
   [[nodiscard]] Nearest nearest_unlike(const glm::dvec3& p, double limit, std::uint32_t label) const {
     return nearest_among(
         p, limit, [&](std::uint32_t slot) { return labels_[slot] != label && labels_[slot] != none; },
         [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
   }
-  template <class Wanted, class Visit>
-  void within_unlike(const glm::dvec3& p, double radius, std::uint32_t label, Wanted wanted, Visit visit) const {
-    if (nodes_.empty()) return;
-    descend(
-        p, [&, bound = inclusive(radius)] { return bound; },
-        [&](std::uint32_t slot) {
-          if (labels_[slot] == label || labels_[slot] == none || !wanted(faces_[slot])) return true;
-          return squared_distance(p, slot) > radius * radius || visit(faces_[slot]);
-        },
-        [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
+
+  // Calls visit(face) for the triangles in nodes whose boxes lie nearer than bound(), a squared distance that may shrink
+  // meanwhile, nearer ones first, until visit returns false.
+  template <class Bound, class Visit>
+  void visit_boxes(const glm::dvec3& p, Bound bound, Visit visit) const {
+    if (!nodes_.empty()) descend(p, bound, [&](std::uint32_t slot) { return visit(faces_[slot]); });
   }
 
   // Whether the triangle of this slot lies no farther than `radius`.
