@@ -64,8 +64,8 @@ class TilesetWriter {
     return place != tiles.end() && place->x == id.x && place->y == id.y ? &*place : nullptr;
   }
 
-  // The tile's own heights, the whole pyramid's above the two roots, with a margin that grows upwards: children are then
-  // inside their parents whatever was rounded.
+  // The tile's own heights, the whole pyramid's above the two roots, with a margin that grows upwards: children are
+  // then inside their parents whatever was rounded.
   [[nodiscard]] Json region(const TileId& id, double width_deg) const {
     constexpr double radians = std::numbers::pi / 180.0;
     const GeoBox box = bounds_of(id);
