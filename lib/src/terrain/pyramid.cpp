@@ -287,10 +287,14 @@ class TerrainPlanner {
     }
     add(static_cast<double>(options_.method));
     const PointSetOptions& points = options_.points;
-    for (const double ratio : points.keep_ratio) add(ratio);
-    for (const std::uint32_t posts : points.cell_posts) add(posts);
-    for (const std::uint32_t posts : points.cluster_posts) add(posts);
-    for (const double variation : points.surface_variation) add(variation);
+    const auto add_all = [&](const auto& values) {
+      add(static_cast<double>(values.size()));
+      for (const auto value : values) add(value);
+    };
+    add_all(points.keep_ratio);
+    add_all(points.cell_posts);
+    add_all(points.cluster_posts);
+    add_all(points.surface_variation);
     for (const double number : {points.radius_posts, points.feature_angle_rad}) add(number);
     for (const std::uint32_t number : {points.iterations, points.feature_edges}) add(number);
     add(options_.volume_weight);

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <mutex>
+#include <set>
 #include <tuple>
 
 #include "data.h"
@@ -393,6 +394,25 @@ TEST_CASE("water is where a second source says, not where heights are missing") 
   CHECK(plan(&lake).fingerprint() == pyramid.fingerprint());
   CHECK(plan(&other).fingerprint() != pyramid.fingerprint());
   CHECK(TerrainPyramid::plan(source, {.sea_level_m = 0.0, .water = &lake}).error().code == ErrorCode::BadArgument);
+}
+
+TEST_CASE("pyramids of other options have other fingerprints, whichever list by zoom a number stands in") {
+  const FormulaHeights source{test::ranges_m, {10.0, 40.0, 20.0, 50.0}, 1};
+  std::set<std::uint64_t> found;
+  const auto plan = [&](std::vector<double> keep, std::vector<std::uint32_t> cells) {
+    TerrainOptions options{.method = TerrainMethod::PointsGrid, .max_error_m = {100.0}};
+    options.points.keep_ratio = std::move(keep);
+    options.points.cell_posts = std::move(cells);
+    const auto pyramid = TerrainPyramid::plan(source, options);
+    REQUIRE(pyramid.ok());
+    found.insert(pyramid->fingerprint());
+  };
+  plan({0.5}, {4});
+  plan({0.5}, {4});
+  CHECK(found.size() == 1);
+  plan({0.5, 1.0}, {4});
+  plan({0.5}, {1, 4});
+  CHECK(found.size() == 3);
 }
 
 TEST_CASE("a source without data and options out of range are refused") {
