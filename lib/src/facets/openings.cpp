@@ -519,10 +519,15 @@ std::optional<OpeningJob> Openings::job(const Opening& opening, double price, do
   if (known.state == state && known.key > price) return std::nullopt;
   double least_key = std::numeric_limits<double>::infinity();
   auto pane = flatten(opening, price, least_key);
+  // Once: between the two sides of a solid wall a pane would come and go for ever.
+  if (pane && pane->patch.gone.empty() && known.has_come) pane.reset();
   auto closing = fill(mesh_, opening);
-  known = {state, std::min({key_of(pane), key_of(closing), least_key})};
+  known = {state, std::min({key_of(pane), key_of(closing), least_key}), known.has_come};
   const auto fits = [&](const auto& job) { return job && job->key() <= price && job->error_m <= most_error_m; };
-  if (fits(pane)) return pane;
+  if (fits(pane)) {
+    known.has_come = known.has_come || pane->patch.gone.empty();
+    return pane;
+  }
   if (fits(closing)) return closing;
   return std::nullopt;
 }

@@ -45,6 +45,7 @@ class Openings {
   struct Known {
     std::uint64_t state = 0;  // of the outline and of what is near
     double key = 0.0;
+    bool has_come = false;  // a pane, into its plane, though that saved no face
   };
   [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price, double& least_key);
   [[nodiscard]] std::optional<OpeningJob> pane_of(const Opening& opening, const glm::dvec3& normal,
