@@ -34,6 +34,13 @@ enum class Borders : std::uint8_t {
   Lock,      ///< border vertices never move
 };
 
+/// A plane that faces are to keep: dot(normal, p) == offset_m, relative to the mesh's origin.
+struct HeldPlane {
+  glm::dvec3 normal{0.0};  ///< unit
+  double offset_m = 0.0;
+  bool firm = true;  ///< else faces may leave it at the price of EdgeCollapseOptions::plane_arm_m
+};
+
 struct EdgeCollapseOptions {
   Placement placement = Placement::Optimal;
   Attributes attributes = Attributes::All;
@@ -57,6 +64,20 @@ struct EdgeCollapseOptions {
   bool prune_parts = true;
   /// One per vertex (any nonzero = never moved, never removed); empty = none.
   std::vector<std::uint8_t> frozen;
+  /// Planes that faces lie in and keep as long as they live: a vertex around which the faces of one plane lie moves in
+  /// that plane only, of two along the line where they meet, and one of three or more stays, or is met by neighbours
+  /// that lie on the same planes. Two corners of different planes may meet where these do, so that a bevel between
+  /// them becomes an edge. Where planes are nearly parallel the ones listed first count.
+  std::vector<HeldPlane> planes;
+  /// Per face its plane, `none` = free: only the planes of its neighbours hold it. Empty = all are free.
+  std::vector<std::uint32_t> face_planes;
+  /// A vertex may be put so far from a plane; at least 1e-6 of the diagonal, for positions are floats. One that does
+  /// not move may lie farther, where the source does: surveyed walls are flat to 1 or 2 mm. Metres.
+  double plane_tolerance_m = 0.0;
+  /// A face that turns away from the normal of its plane costs as if it lay so far off, times the sine of the turn:
+  /// steers faces of planes that are not firm, and places that firm planes leave open. max_error_m limits
+  /// it too, but no error tells of it. 0 switches it off; metres.
+  double plane_arm_m = 0.0;
 };
 
 /// Why building stopped short of the target: share of the remaining candidate edges held by each cause, 0..1.
@@ -66,6 +87,7 @@ struct CollapseReport {
   double locked_by_flip = 0.0;
   double locked_by_link = 0.0;
   double locked_by_frozen = 0.0;
+  double locked_by_planes = 0.0;
   std::string sentence;  ///< empty if the target was reached
 };
 

@@ -171,6 +171,7 @@ Refusal Collapser::choose_ends() {
 }
 
 bool Collapser::try_place(const glm::dvec3& y) {
+  if (!held_.allow(y, star_)) return false;
   const glm::dvec3 origin{state_.mesh.position[star_.u]};
   const bool at_u = y == glm::dvec3{0.0};
   const bool at_v = y == star_.e;
@@ -201,6 +202,13 @@ Refusal Collapser::choose_place() {
   if (ends_only && !fit_at(star_, star_.e).upright && !fit_at(star_, glm::dvec3{0.0}).upright) return Refusal::Flip;
   if (!star_.plain) find_lines();
   quadric_ = sum_star(star_, state_.line_weight, state_.mesh.weight_at(star_.u), state_.mesh.weight_at(star_.v));
+  if (!state_.options.face_planes.empty()) {
+    held_.look_at(star_, state_.mesh, state_.options, state_.diagonal_m);
+    if (!held_.meet()) return Refusal::Plane;
+  }
+  const bool steered = state_.options.plane_arm_m > 0.0 && !state_.options.face_planes.empty();
+  if (steered) turns_ = sum_turns(star_, state_.mesh, state_.options);
+  const StarQuadric aim = steered ? quadric_ + turns_ : quadric_;
   // A place where the end that cannot go, or may not move, already is.
   const bool must_u = u_fixed_ || (ends_only && !u_may_go_);
   const bool must_v = v_fixed_ || (ends_only && !v_may_go_);
@@ -209,25 +217,27 @@ Refusal Collapser::choose_place() {
   if (must_u || must_v) {
     found = try_place(must_u ? zero : star_.e);
   } else {
-    found = try_place(best_place(star_, quadric_, placement));
-    const bool u_better = quadric_.cost(zero) <= quadric_.cost(star_.e);
+    found = try_place(held_.empty() ? best_place(star_, aim, placement) : held_.best_place(star_, aim, placement));
+    const bool u_better = aim.cost(zero) <= aim.cost(star_.e);
     if (!found) found = try_place(u_better ? zero : star_.e);
     if (!found) found = try_place(u_better ? star_.e : zero);
   }
-  if (!found) return Refusal::Flip;
-  cost_ = choice_.cost;
+  if (!found) return held_.empty() ? Refusal::Flip : Refusal::Plane;
+  const double turn_cost = steered ? turns_.cost(choice_.relative) : 0.0;
+  cost_ = choice_.cost + turn_cost;
   if (cost_ > cost_limit_) return Refusal::Cost;
   cost_ += wedges_.plan(star_, choice_);
   if (cost_ > cost_limit_) return Refusal::Cost;
-  error_m_ = error_m();
-  if (!(error_m_ > state_.options.max_error_m)) return Refusal::None;
+  error_m_ = error_m(choice_.cost);
+  const float limited_m = steered ? error_m(choice_.cost + turn_cost) : error_m_;
+  if (!(limited_m > state_.options.max_error_m)) return Refusal::None;
   cost_ = infinity;
   return Refusal::Cost;
 }
 
-float Collapser::error_m() const {
+float Collapser::error_m(double cost) const {
   const double before = std::max(state_.mesh.deviation_m[star_.u], state_.mesh.deviation_m[star_.v]);
-  const double mean = quadric_.weight > 0.0 ? choice_.cost / quadric_.weight : 0.0;
+  const double mean = quadric_.weight > 0.0 ? cost / quadric_.weight : 0.0;
   const glm::dvec3 from_v = choice_.relative - star_.e;
   // No point of the surface goes further than the end it hangs on.
   const double travel = std::max(glm::dot(choice_.relative, choice_.relative), glm::dot(from_v, from_v));

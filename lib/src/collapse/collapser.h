@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "collapse/held_planes.h"
 #include "collapse/pass_log.h"
 #include "collapse/placement.h"
 #include "collapse/star.h"
@@ -14,8 +15,8 @@
 namespace lodestone::collapse {
 
 // Why an edge did not collapse.
-enum class Refusal : std::uint8_t { None, Busy, Border, Flip, Link, Frozen, Cost, Crowded };
-inline constexpr std::size_t refusal_count = 8;
+enum class Refusal : std::uint8_t { None, Busy, Border, Flip, Link, Frozen, Cost, Crowded, Plane };
+inline constexpr std::size_t refusal_count = 9;
 
 // What all regions of a pass share.
 struct PassState {
@@ -72,7 +73,7 @@ class Collapser {
   [[nodiscard]] Refusal choose_place();
   [[nodiscard]] bool try_place(const glm::dvec3& y);
   void commit(std::uint32_t key);
-  [[nodiscard]] float error_m() const;
+  [[nodiscard]] float error_m(double cost) const;
 
   PassState& state_;
   PassLog& log_;
@@ -81,6 +82,8 @@ class Collapser {
   std::vector<Spoke> spokes_;
   std::vector<Lost> lost_;
   StarQuadric quadric_;
+  StarQuadric turns_;  // steer and set the price, but are no distance
+  HeldPlanes held_;
   bool u_fixed_ = false, v_fixed_ = false;  // may neither go nor move
   bool u_may_go_ = false, v_may_go_ = false;
   Choice choice_;

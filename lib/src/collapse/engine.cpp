@@ -346,6 +346,7 @@ CollapseReport Engine::report() const {
   result.locked_by_flip = share(Refusal::Flip);
   result.locked_by_link = share(Refusal::Link);
   result.locked_by_frozen = share(Refusal::Frozen);
+  result.locked_by_planes = share(Refusal::Plane);
   const auto percent = [](double x) { return std::to_string(std::lround(100.0 * x)) + " %"; };
   result.sentence = std::to_string(faces_left_) + " triangles are left: of the edges that could still collapse " +
                     percent(result.locked_by_border) + " are held by borders, " + percent(result.locked_by_flip) +
@@ -353,7 +354,30 @@ CollapseReport Engine::report() const {
                     " because the surface would touch itself, " + percent(result.locked_by_frozen) +
                     " by frozen or sharp vertices, " + percent(share(Refusal::Crowded)) +
                     " by vertices of very many faces, " + percent(share(Refusal::Cost)) + " by the error limit";
+  if (!options_.face_planes.empty()) result.sentence += ", " + percent(result.locked_by_planes) + " by planes";
   return result;
+}
+
+}  // namespace
+
+namespace {
+
+Status check_planes(const Mesh& mesh, const EdgeCollapseOptions& options) {
+  const std::vector<std::uint32_t>& of_face = options.face_planes;
+  if (!of_face.empty() && of_face.size() != mesh.triangle_count()) {
+    return Error{ErrorCode::BadArgument, "the planes of faces must have one element per face", "face_planes"};
+  }
+  const auto unknown = [&](std::uint32_t plane) { return plane != none && plane >= options.planes.size(); };
+  if (std::any_of(of_face.begin(), of_face.end(), unknown)) {
+    return Error{ErrorCode::BadArgument, "a face names a plane that is not in the list", "face_planes"};
+  }
+  const auto crooked = [](const HeldPlane& plane) {
+    return !(std::abs(glm::dot(plane.normal, plane.normal) - 1.0) < 1e-6) || !std::isfinite(plane.offset_m);
+  };
+  if (std::any_of(options.planes.begin(), options.planes.end(), crooked)) {
+    return Error{ErrorCode::BadArgument, "a held plane needs a unit normal and a finite offset", "planes"};
+  }
+  return Done{};
 }
 
 }  // namespace
@@ -377,7 +401,7 @@ Status check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   if (!options.frozen.empty() && options.frozen.size() != mesh.vertex_count()) {
     return Error{ErrorCode::BadArgument, "the mask of frozen vertices must have one element per vertex", "frozen"};
   }
-  return Done{};
+  return check_planes(mesh, options);
 }
 
 CollapseReport run(const Mesh& source, const EdgeCollapseOptions& options, const Context& context, Sink& sink,

@@ -13,17 +13,13 @@
 #include "geometry/distance.h"
 
 namespace lodestone::collapse {
-namespace {
 
-// Square of how far from u a vertex may sensibly go.
 double reach_squared(const Star& star) {
   double reach = glm::dot(star.e, star.e);
   for (const StarFace& f : star.faces) reach = std::max({reach, glm::dot(f.at_a, f.at_a), glm::dot(f.at_b, f.at_b)});
   return reach;
 }
 
-// Whether a place is farther from the faces around the edge than half the edge: a spike, of which their planes say
-// nothing.
 bool sticks_out(const Star& star, const glm::dvec3& y) {
   const double near2 = 0.25 * glm::dot(star.e, star.e);
   if (squared_distance_to_segment(y, glm::dvec3{0.0}, star.e) <= near2) return false;
@@ -32,6 +28,8 @@ bool sticks_out(const Star& star, const glm::dvec3& y) {
     return squared_distance_to_triangle(y, near, f.at_a, f.at_b) <= near2;
   });
 }
+
+namespace {
 
 // The minimum under the volume constraint, which holds only where the surface is closed around the edge.
 glm::dvec3 optimum(const Star& star, const StarQuadric& quadric) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/edge_collapse.h>
+#include <lodestone/facet_shift.h>
 #include <rapidcheck.h>
 
 #include <algorithm>
@@ -60,6 +61,13 @@ EdgeCollapseOptions any_options(const Mesh& mesh) {
   if (*rc::gen::inRange(0, 4) == 0) {
     options.frozen.assign(mesh.vertex_count(), 0);
     for (auto& f : options.frozen) f = *rc::gen::inRange(0, 8) == 0 ? 1 : 0;
+  }
+  if (*rc::gen::inRange(0, 3) == 0) {
+    CharacteristicSurfaces found = characteristic_surfaces(mesh);
+    for (const CharacteristicSurface& s : found.surfaces)
+      options.planes.push_back({s.normal, s.offset_m, *rc::gen::arbitrary<bool>()});
+    options.face_planes = std::move(found.surface_of_face);
+    options.plane_arm_m = *rc::gen::arbitrary<bool>() ? 2.0 : 0.0;
   }
   return options;
 }
