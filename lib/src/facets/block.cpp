@@ -22,6 +22,7 @@ namespace lodestone::facets {
 namespace {
 
 constexpr std::uint32_t most_corners = 8;
+constexpr double under_roof_m = 0.3;        // a roof may lie so far below the top of the block
 constexpr double most_street_share = 0.03;  // of the faces, for several prisms: a house and its shed become one
 constexpr std::uint32_t samples = 8192;     // of either surface, beside the corners
 constexpr double least_face_share = 1e-5;   // of the area: smaller faces are not needed to find the nearest
@@ -143,6 +144,14 @@ void Block::add_prism(const Footprint& footprint, std::uint32_t house) {
   }
 }
 
+namespace {
+
+double highest_m(const FacetMesh& mesh, const Face& face) {
+  return std::max({mesh.at(face.point[0]).z, mesh.at(face.point[1]).z, mesh.at(face.point[2]).z});
+}
+
+}  // namespace
+
 // No glass.
 void Block::choose_materials(const FacetMesh& mesh) {
   std::vector<double> walls(mesh.source->materials.size(), 0.0);
@@ -153,7 +162,8 @@ void Block::choose_materials(const FacetMesh& mesh) {
     const double area = glm::length(mesh.area_vector(face)) * see_through(*mesh.source, material);
     if (face.normal.z < 1.0 - facing_cosine) {
       walls[material] += area * (1.0 - std::abs(face.normal.z));
-    } else {
+    } else if (houses_.count > 1 || highest_m(mesh, face) > corners_.back().z - under_roof_m) {
+      // Floors and the ground are no roof. One house's top is the last of its corners.
       roofs[material] += area;
     }
   }

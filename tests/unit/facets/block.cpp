@@ -59,6 +59,26 @@ TEST_CASE("the block stands on the outline of the walls, as high as half of the 
   for (const char* name : {"lod1", "block"}) CHECK(built->model->level_of_name(name).value() == 0);
 }
 
+TEST_CASE("the roof of a block is of the roof's material, not of that of the floors and the ground under it") {
+  Mesh mesh;
+  mesh.materials.resize(2);
+  add_prism(mesh, l_shape, 0.0F, 7.0F);
+  mesh.face_materials.assign(mesh.triangle_count(), 0);
+  add_prism(mesh, {{0.2F, 0.2F}, {19.8F, 0.2F}, {19.8F, 7.8F}, {7.8F, 7.8F}, {7.8F, 15.8F}, {0.2F, 15.8F}}, 2.9F, 3.1F);
+  mesh.face_materials.resize(mesh.triangle_count(), 0);
+  // The roof is a slab on top.
+  add_prism(mesh, l_shape, 7.0F, 7.3F);
+  mesh.face_materials.resize(mesh.triangle_count(), 1);
+  const auto built = build_by_facet_shift(mesh);
+  REQUIRE(built.ok());
+  REQUIRE(built->report.reached_block);
+  const Mesh block = built->model->extract(0);
+  for (FaceId f = 0; f < block.triangle_count(); ++f) {
+    const auto at = [&](std::uint32_t k) { return glm::dvec3{block.vertices.positions[block.indices[3 * f + k]]}; };
+    if (glm::cross(at(1) - at(0), at(2) - at(0)).z > 0.0) CHECK(block.face_material(f) == 1);
+  }
+}
+
 TEST_CASE("what overhangs does not widen the block") {
   const Mesh house = test::small_house(20'000, Roof::Flat);
   const auto built = build_by_facet_shift(house);

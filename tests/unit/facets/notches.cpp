@@ -103,26 +103,6 @@ TEST_CASE("a loose door in a notch of the wall comes forward, and later the wall
   CHECK(closed);
 }
 
-TEST_CASE("between the two sides of a solid wall a door comes forward once to each, and the build ends") {
-  Mesh mesh = empty_mesh();
-  add_front(mesh);
-  constexpr double thick = 0.3;
-  add_polygon(mesh, 0,
-              {{10, thick, 0},
-               {right, thick, 0},
-               {right, thick, top},
-               {left, thick, top},
-               {left, thick, 0},
-               {0, thick, 0},
-               {0, thick, 6},
-               {10, thick, 6}});
-  add_door(mesh, 0.1);
-  const auto built = build_by_facet_shift(mesh);
-  REQUIRE(built.ok());
-  CHECK(compare_with_source(*built->model, mesh) == "");
-  CHECK(built->report.openings_flattened <= 2);
-}
-
 TEST_CASE("a gate through which one sees closes as a hole of its size does") {
   Mesh mesh = empty_mesh();
   add_front(mesh);

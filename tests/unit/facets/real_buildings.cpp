@@ -10,6 +10,7 @@
 
 #include "blocks.h"
 #include "data.h"
+#include "directions.h"
 
 namespace lodestone {
 namespace {
@@ -29,6 +30,8 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
   constexpr std::array<double, 5> ratios{0.5, 0.2, 0.1, 0.05, 0.02};
   std::array<double, 5> deviation_deg{};
   std::array<double, 5> rms_ppm{};
+  std::array<double, 5> leaning_walls{};
+  std::array<double, 5> leaning_others{};
   std::uint32_t rich = 0;
   for (const auto& file : building_files(root)) {
     CAPTURE(file.string());
@@ -43,8 +46,12 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
     CHECK(compare_with_source(*built->model, source) == "");
     CHECK(built->report.reached_block);
     test::check_block(built->model->extract(0));
+    for (Level level = 0; level < built->model->record_count(); level += built->model->record_count() / 4 + 1) {
+      CHECK_FALSE(test::grows(source, built->model->extract(level), built->model->error_m(level)));
+    }
     if (source.triangle_count() < 1000) continue;
     ++rich;
+    const CharacteristicSurfaces directions = characteristic_surfaces(source);
     for (std::size_t i = 0; i < ratios.size(); ++i) {
       const auto wanted = static_cast<std::uint32_t>(ratios[i] * source.triangle_count());
       const Mesh level = built->model->extract(built->model->level_of_triangles(wanted));
@@ -52,6 +59,9 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
       REQUIRE(distance.ok());
       deviation_deg[i] += glm::degrees(distance->normal_deviation_rad);
       rms_ppm[i] += 1e6 * distance->rms_m / distance->diagonal_m;
+      const test::Leaning leaning = test::leaning(directions, level);
+      leaning_walls[i] += leaning.walls_m2 / leaning.area_m2;
+      leaning_others[i] += leaning.others_m2 / leaning.area_m2;
       // The claim bounds what a sampler finds.
       CHECK(distance->p999_m <= built->model->error_m(built->model->level_of_triangles(wanted)) + 1e-3);
     }
@@ -59,10 +69,15 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
   REQUIRE(rich == 30);
   constexpr std::array<double, 5> most_deg{0.02, 0.04, 0.06, 0.13, 0.8};
   constexpr std::array<double, 5> most_ppm{120.0, 270.0, 490.0, 1180.0, 3400.0};
+  // Of the area: walls over half a degree off the upright, roofs and others over a degree off their direction.
+  constexpr std::array<double, 5> most_walls{5e-4, 1e-3, 1e-3, 2e-3, 8e-3};
+  constexpr std::array<double, 5> most_others{8e-4, 2e-3, 2e-3, 4e-3, 2e-2};
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     CAPTURE(ratios[i]);
     CHECK(deviation_deg[i] / rich < most_deg[i]);
     CHECK(rms_ppm[i] / rich < most_ppm[i]);
+    CHECK(leaning_walls[i] / rich < most_walls[i]);
+    CHECK(leaning_others[i] / rich < most_others[i]);
   }
 }
 
