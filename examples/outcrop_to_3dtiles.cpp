@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", lodestone::to_line(mesh.error()).c_str());
     return 2;
   }
+  std::printf("%u triangles in the source\n", mesh->triangle_count());
   const auto written = lodestone::write_outcrop(std::move(*mesh), argv[1], {.pyramid = {.tile_bytes = 60'000}});
   if (!written) {
     std::fprintf(stderr, "%s\n", lodestone::to_line(written.error()).c_str());

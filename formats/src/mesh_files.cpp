@@ -149,7 +149,11 @@ Result<LoadedMesh> read_input(const Input& input, const ReadOptions& options, co
   if (auto valid = validate(mesh); !valid) {
     return Error{ErrorCode::BadData, valid.error().message + " (" + valid.error().where + ")", input.name()};
   }
-  return {std::move(*loaded), warnings.take()};
+  std::vector<Warning> list = warnings.take();
+  for (Warning& warning : list) {
+    if (warning.where.empty()) warning.where = input.name();
+  }
+  return {std::move(*loaded), std::move(list)};
 }
 
 Result<LoadedMesh> read_mesh(const std::filesystem::path& file, const ReadOptions& options, const Context& context) {

@@ -85,8 +85,10 @@ struct TilesetReport {
 struct TilesetCheck {
   std::uint32_t tiles = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t triangles = 0;                ///< of all tiles without children
-  std::uint32_t contents_outside_box = 0;     ///< tiles with a vertex outside their own bounding volume
+  std::uint64_t triangles = 0;             ///< of all tiles without children
+  std::uint32_t contents_outside_box = 0;  ///< tiles with a vertex outside their own bounding volume
+  std::uint32_t loose_boxes =
+      0;  ///< tiles whose volume reaches farther than content and children by 1 % of its diagonal
   std::uint32_t children_outside_parent = 0;  ///< tiles whose volume is not inside their parent's
   std::uint32_t errors_not_monotone = 0;      ///< tiles whose geometricError is not below their parent's
   /// Over all levels: edges with one triangle in all tiles of the level together, beyond those that the level has as

@@ -8,9 +8,12 @@
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <iterator>
+
+#include <lodestone/outcrop.h>
 
 namespace lodestone::osgb {
 namespace {
@@ -107,24 +110,48 @@ class Builder {
   Mesh finish();
 
  private:
-  MaterialId material_of(const osg::Image* look);
+  MaterialId material_of(const osg::Image* look, const glm::vec4& color, bool skirt);
   void add_positions(const osg::Array* array, const osg::Matrixd& place);
   void add_looks(const osg::Geometry& geometry, const osg::Matrixd& place, std::size_t count);
 
   Mesh mesh_;
-  std::vector<const osg::Image*> looks_;  // per material
+  std::vector<const osg::Image*> images_;  // per texture
   bool has_normals_ = false;
   bool has_uvs_ = false;
   bool has_colors_ = false;
 };
 
-MaterialId Builder::material_of(const osg::Image* look) {
-  const auto known = std::find(looks_.begin(), looks_.end(), look);
-  if (known != looks_.end()) return static_cast<MaterialId>(known - looks_.begin());
-  looks_.push_back(look);
+// Of a geometry without colours of its vertices' own.
+glm::vec4 overall_color(const osg::Geometry& geometry) {
+  const osg::Array* array = geometry.getColorArray();
+  if (array == nullptr || array->getBinding() != osg::Array::BIND_OVERALL || array->getNumElements() == 0) {
+    return glm::vec4{1.0F};
+  }
+  if (const auto* bytes = dynamic_cast<const osg::Vec4ubArray*>(array)) {
+    const osg::Vec4ub& c = bytes->front();
+    return glm::vec4{c.r(), c.g(), c.b(), c.a()} / 255.0F;
+  }
+  if (const auto* floats = dynamic_cast<const osg::Vec4Array*>(array)) {
+    const osg::Vec4& c = floats->front();
+    return glm::clamp(glm::vec4{c.r(), c.g(), c.b(), c.a()}, 0.0F, 1.0F);
+  }
+  return glm::vec4{1.0F};
+}
+
+MaterialId Builder::material_of(const osg::Image* look, const glm::vec4& color, bool skirt) {
+  const auto seen = std::find(images_.begin(), images_.end(), look);
+  const auto texture_at = look != nullptr ? static_cast<std::uint32_t>(seen - images_.begin()) : none;
+  for (MaterialId m = 0; m < mesh_.materials.size(); ++m) {
+    const Material& material = mesh_.materials[m];
+    if (material.texture == texture_at && material.base_color == color && (material.name == skirt_name) == skirt) {
+      return m;
+    }
+  }
   Material material;
-  if (look != nullptr) {
-    material.texture = static_cast<std::uint32_t>(mesh_.textures.size());
+  material.base_color = color;
+  material.texture = texture_at;
+  if (look != nullptr && seen == images_.end()) {
+    images_.push_back(look);
     Texture texture;
     texture.name = std::to_string(mesh_.textures.size());
     if (const auto* encoded = dynamic_cast<const EncodedImage*>(look)) {
@@ -134,9 +161,10 @@ MaterialId Builder::material_of(const osg::Image* look) {
     }
     mesh_.textures.push_back(std::move(texture));
   }
-  material.name = look != nullptr ? "texture " + mesh_.textures.back().name : "plain";
+  material.name = look != nullptr ? "texture " + mesh_.textures[texture_at].name : "plain";
+  if (skirt) material.name = skirt_name;
   mesh_.materials.push_back(std::move(material));
-  return static_cast<MaterialId>(looks_.size() - 1);
+  return static_cast<MaterialId>(mesh_.materials.size() - 1);
 }
 
 void Builder::add_positions(const osg::Array* array, const osg::Matrixd& place) {
@@ -184,7 +212,7 @@ void Builder::add(const osg::Geometry& geometry, const osg::Matrixd& place, cons
   geometry.accept(faces);
   add_positions(array, place);
   add_looks(geometry, place, count);
-  const MaterialId material = material_of(look);
+  const MaterialId material = material_of(look, overall_color(geometry), geometry.getName() == skirt_name);
   for (std::size_t f = 0; f + 2 < faces.corners.size(); f += 3) {
     const auto* corners = &faces.corners[f];
     if (std::any_of(corners, corners + 3, [&](unsigned corner) { return corner >= count; })) {

@@ -16,11 +16,13 @@
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 
+#include <lodestone/outcrop.h>
 #include <lodestone/tile_loader.h>
 
 #include "osgb/serve.h"
@@ -109,31 +111,59 @@ osg::ref_ptr<osg::Geometry> arrays_of(const Mesh& mesh) {
     for (const auto& uv : mesh.vertices.uvs) uvs->push_back(osg::Vec2(uv.x, uv.y));
     geometry->setTexCoordArray(0, uvs);
   }
-  if (!mesh.vertices.colors.empty()) {
-    osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray;
-    for (const auto& c : mesh.vertices.colors) colors->push_back(osg::Vec4ub(c.r, c.g, c.b, c.a));
-    colors->setNormalize(true);
-    geometry->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
-  }
   geometry->setUseDisplayList(false);
   geometry->setUseVertexBufferObjects(true);
   return geometry;
 }
 
-// Textured faces and plain ones apart, over the same vertices.
+// Of faces with this base colour: one for all, unless vertices have their own.
+osg::ref_ptr<osg::Array> colors_of(const Mesh& mesh, const glm::vec4& base) {
+  osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray;
+  const bool own = !mesh.vertices.colors.empty();
+  const auto append = [&](const glm::vec4& color) {
+    const glm::vec4 c = glm::clamp(color, 0.0F, 1.0F) * 255.0F + 0.5F;
+    const auto byte = [](float value) { return static_cast<unsigned char>(value); };
+    colors->push_back(osg::Vec4ub(byte(c.r), byte(c.g), byte(c.b), byte(c.a)));
+  };
+  if (!own) append(base);
+  for (const auto& c : mesh.vertices.colors) append(base * glm::vec4{c} / 255.0F);
+  colors->setNormalize(true);
+  colors->setBinding(own ? osg::Array::BIND_PER_VERTEX : osg::Array::BIND_OVERALL);
+  return colors;
+}
+
+// What looks alike is one geometry, all over the same vertices. Skirts are apart, under their name.
 osg::ref_ptr<osg::Geode> Writer::geode_of(NodeId tile, const Mesh& mesh) {
+  struct Kind {
+    bool textured, skirt;
+    glm::vec4 color;
+  };
+  std::vector<Kind> kinds;
+  std::vector<osg::ref_ptr<osg::DrawElementsUInt>> faces;
+  for (lodestone::FaceId f = 0; f < mesh.triangle_count(); ++f) {
+    const lodestone::Material& material = mesh.materials[mesh.face_material(f)];
+    const Kind kind{material.texture != lodestone::none, is_skirt(mesh, f), material.base_color};
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) {
+      return k.textured == kind.textured && k.skirt == kind.skirt && k.color == kind.color;
+    });
+    const auto at = static_cast<std::size_t>(known - kinds.begin());
+    if (known == kinds.end()) {
+      kinds.push_back(kind);
+      faces.emplace_back(new osg::DrawElementsUInt(GL_TRIANGLES));
+    }
+    for (std::size_t k = 0; k < 3; ++k) faces[at]->push_back(mesh.indices[3 * std::size_t{f} + k]);
+  }
   osg::ref_ptr<osg::Geode> geode = new osg::Geode;
   const osg::ref_ptr<osg::Geometry> arrays = arrays_of(mesh);
-  for (const bool textured : {true, false}) {
-    osg::ref_ptr<osg::DrawElementsUInt> faces = new osg::DrawElementsUInt(GL_TRIANGLES);
-    for (lodestone::FaceId f = 0; f < mesh.triangle_count(); ++f) {
-      if ((mesh.materials[mesh.face_material(f)].texture != lodestone::none) != textured) continue;
-      for (std::size_t k = 0; k < 3; ++k) faces->push_back(mesh.indices[3 * std::size_t{f} + k]);
-    }
-    if (faces->empty()) continue;
+  osg::ref_ptr<osg::StateSet> photograph;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
     osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry(*arrays);
-    geometry->addPrimitiveSet(faces);
-    if (textured) geometry->setStateSet(look_of(tile, mesh));
+    geometry->addPrimitiveSet(faces[i]);
+    const bool white = mesh.vertices.colors.empty() && kinds[i].color == glm::vec4{1.0F};
+    if (!white) geometry->setColorArray(colors_of(mesh, kinds[i].color));
+    if (kinds[i].textured && !photograph) photograph = look_of(tile, mesh);
+    if (kinds[i].textured) geometry->setStateSet(photograph);
+    if (kinds[i].skirt) geometry->setName(lodestone::skirt_name);
     geode->addDrawable(geometry);
   }
   return geode;

@@ -18,7 +18,8 @@ using Key = std::array<std::uint32_t, 6>;  // two positions, bit by bit
 
 class Checker {
  public:
-  Checker(const Tileset& tileset, const Context& context) : tileset_(tileset), context_(context) {}
+  Checker(const Tileset& tileset, const Context& context)
+      : tileset_(tileset), context_(context), needed_(tileset.tiles.size()) {}
 
   Result<TilesetCheck> run() {
     std::vector<std::uint32_t> order(tileset_.tiles.size());
@@ -67,14 +68,26 @@ class Checker {
     const Mesh& mesh = content->mesh;
     if (tile.children.empty()) result_.triangles += surface_triangle_count(mesh);
     bool outside = false;
+    Box& needed = needed_[i];  // children were looked at before
     for (const glm::vec3& p : mesh.vertices.positions) {
       const glm::dvec3 at = mesh.origin + glm::dvec3{p};
+      needed.add(at);
       outside =
           outside || glm::any(glm::lessThan(at, tile.bounds.min)) || glm::any(glm::greaterThan(at, tile.bounds.max));
     }
     if (outside) {
       ++result_.contents_outside_box;
       fault(i, "a vertex lies outside its box");
+    }
+    const double slack_m = 0.01 * tile.bounds.diagonal_m();
+    if (glm::any(glm::lessThan(tile.bounds.min, needed.min - slack_m)) ||
+        glm::any(glm::greaterThan(tile.bounds.max, needed.max + slack_m))) {
+      ++result_.loose_boxes;
+      fault(i, "its box is larger than what it holds");
+    }
+    if (tile.parent != none) {
+      needed_[tile.parent].add(needed.min);
+      needed_[tile.parent].add(needed.max);
     }
     for (std::size_t c = 0; c < mesh.indices.size(); ++c) {
       if (is_skirt(mesh, static_cast<FaceId>(c / 3))) continue;
@@ -110,7 +123,8 @@ class Checker {
   const Tileset& tileset_;
   const Context& context_;
   TilesetCheck result_;
-  std::vector<Key> edges_;  // of all tiles of the level at hand
+  std::vector<Box> needed_;  // per tile: of its content and those below
+  std::vector<Key> edges_;   // of all tiles of the level at hand
 };
 
 }  // namespace

@@ -34,12 +34,17 @@ std::string tile_name(const OutcropPyramid& pyramid, std::uint32_t tile, TilesVe
 }
 
 Status write_tileset_json(const OutcropPyramid& pyramid, const std::filesystem::path& file, TilesVersion version,
-                          std::vector<Warning>& warnings) {
+                          const std::vector<Box>& contents, std::vector<Warning>& warnings) {
   // Children stand before their parents, so each is finished when its parent takes it.
   std::vector<Json> tiles(pyramid.tiles().size());
+  std::vector<Box> boxes = contents;
   for (std::uint32_t i = 0; i < tiles.size(); ++i) {
     const OutcropTile& tile = pyramid.tiles()[i];
-    Json json{{"boundingVolume", {{"box", box_json(tile.bounds)}}},
+    for (const std::uint32_t child : tile.children) {
+      boxes[i].add(boxes[child].min);
+      boxes[i].add(boxes[child].max);
+    }
+    Json json{{"boundingVolume", {{"box", box_json(boxes[i])}}},
               {"geometricError", client_error_px * tile.error_m},
               {"content", {{"uri", tile_name(pyramid, i, version)}}}};
     for (const std::uint32_t child : tile.children) json["children"].push_back(std::move(tiles[child]));
@@ -56,7 +61,7 @@ Status write_tileset_json(const OutcropPyramid& pyramid, const std::filesystem::
   root["transform"] = transform;
   // Below this error nothing at all would be drawn: it must not come before the outcrop is a few pixels large.
   const OutcropTile& top = pyramid.tiles().back();
-  const double whole_m = std::max(top.bounds.diagonal_m(), 2.0 * top.error_m);
+  const double whole_m = std::max(boxes.back().diagonal_m(), 2.0 * top.error_m);
   Json asset{{"version", version == TilesVersion::V11 ? "1.1" : "1.0"}, {"generator", "Lodestone"}};
   if (!pyramid.crs().empty()) asset["extras"]["crs"] = pyramid.crs();
   asset["extras"]["origin"] = {pyramid.origin().x, pyramid.origin().y, pyramid.origin().z};

@@ -15,7 +15,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 case "$1" in
   tiles)
     rm -rf "$3"
-    "$2" "$3" ;;
+    "$2" "$3" | tee "$3.told" ;;
   packed)
     rm -rf "$3" "$3.source" && mkdir -p "$3.source"
     "$2" generate outcrop -o "$3.source/plain.obj" --triangles 12000 --textures 2 --texture-size 256 --quiet

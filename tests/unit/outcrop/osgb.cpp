@@ -18,16 +18,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void turn_into_osgb(const fs::path& folder) {
+  const fs::path helper{LODESTONE_OSGB};
+  const std::string path = std::getenv("PATH");
+  if (!path.starts_with(helper.parent_path().string())) {
+    REQUIRE(::setenv("PATH", (helper.parent_path().string() + ":" + path).c_str(), 1) == 0);
+  }
+  const std::string command = "'" + helper.string() + "' '" + (folder / "tileset.json").string() + "' '" +
+                              (folder / "osgb").string() + "' >/dev/null 2>&1";
+  REQUIRE(std::system(command.c_str()) == 0);
+}
+
 // One pyramid in both forms: "tileset.json" and "osgb/main.osgb". Tests that damage it take a copy.
 const fs::path& both() {
   static const fs::path folder = [] {
-    const fs::path helper{LODESTONE_OSGB};
-    REQUIRE(::setenv("PATH", (helper.parent_path().string() + ":" + std::getenv("PATH")).c_str(), 1) == 0);
     fs::path made = scratch_folder("osgb_tiles");
     REQUIRE(write_outcrop(small_cliff(), made, {.pyramid = small_tiles()}));
-    const std::string command = "'" + helper.string() + "' '" + (made / "tileset.json").string() + "' '" +
-                                (made / "osgb").string() + "' >/dev/null 2>&1";
-    REQUIRE(std::system(command.c_str()) == 0);
+    turn_into_osgb(made);
     return made;
   }();
   return folder;
@@ -115,6 +122,42 @@ TEST_CASE("Files of OpenSceneGraph that are missing or damaged are told, and wha
   REQUIRE(!none_such);
   CHECK(none_such.error().code == ErrorCode::BadData);
   CHECK(TilePyramid::open(folder / "nothing.osgb").error().code == ErrorCode::NotFound);
+}
+
+TEST_CASE("Plain faces keep their base colours in OpenSceneGraph's files, and those of their vertices") {
+  for (const bool with_colors : {false, true}) {
+    Mesh mesh = small_cliff();
+    mesh.textures.clear();
+    mesh.vertices.uvs.clear();
+    mesh.materials = {{.name = "red", .base_color = {0.8F, 0.2F, 0.0F, 1.0F}},
+                      {.name = "blue", .base_color = {0.0F, 0.4F, 1.0F, 1.0F}}};
+    for (FaceId f = 0; f < mesh.triangle_count(); ++f) mesh.face_materials[f] = f < mesh.triangle_count() / 2 ? 0 : 1;
+    if (with_colors) mesh.vertices.colors.assign(mesh.vertex_count(), glm::u8vec4{128, 128, 128, 255});
+    const fs::path folder = scratch_folder("osgb_plain");
+    REQUIRE(write_outcrop(mesh, folder, {.pyramid = {.tile_bytes = 100'000}}));
+    turn_into_osgb(folder);
+    const auto pyramid = TilePyramid::open(folder / "osgb/main.osgb");
+    if (!pyramid) FAIL(to_line(pyramid.error()));
+    bool red = false;
+    bool blue = false;
+    for (NodeId n = 0; n < (*pyramid)->graph().nodes.size(); ++n) {
+      const auto tile = (*pyramid)->load(n);
+      REQUIRE(tile);
+      for (FaceId f = 0; f < tile->triangle_count(); ++f) {
+        glm::vec4 color = tile->materials[tile->face_material(f)].base_color;
+        if (with_colors) color *= glm::vec4{tile->vertices.colors[tile->indices[3 * std::size_t{f}]]} / 255.0F;
+        const float light = with_colors ? 128.0F / 255.0F : 1.0F;
+        const auto is = [&](const glm::vec3& wanted) {
+          return glm::distance(glm::vec3{color}, light * wanted) < 0.01F;
+        };
+        const bool known = is({0.8F, 0.2F, 0.0F}) || is({0.0F, 0.4F, 1.0F});
+        if (!known) FAIL("a face has another colour");
+        red = red || is({0.8F, 0.2F, 0.0F});
+        blue = blue || is({0.0F, 0.4F, 1.0F});
+      }
+    }
+    CHECK((red && blue));
+  }
 }
 
 TEST_CASE("OpenSceneGraph's ranges give back the errors that they were made from") {

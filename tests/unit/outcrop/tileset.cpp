@@ -45,6 +45,7 @@ TEST_CASE("A tileset holds the source, fits without a seam, and passes its own c
   CHECK(check->tiles == written.tiles);
   CHECK(check->triangles == small_cliff().triangle_count());
   CHECK(check->contents_outside_box == 0);
+  CHECK(check->loose_boxes == 0);
   CHECK(check->children_outside_parent == 0);
   CHECK(check->errors_not_monotone == 0);
   CHECK(check->seams_open == 0);
@@ -77,6 +78,12 @@ TEST_CASE("The check of a tileset finds what is wrong with it") {
   };
   CHECK(damaged([](auto& root) { root["children"][0]["boundingVolume"]["box"][0] = 5e3; }).children_outside_parent > 0);
   CHECK(damaged([](auto& root) { root["children"][0]["boundingVolume"]["box"][3] = 1e-3; }).contents_outside_box > 0);
+  CHECK(damaged([](auto& root) {
+          for (const int half : {3, 7, 11}) {
+            auto& box = root["boundingVolume"]["box"];
+            box[half] = 1.1 * box[half].template get<double>();
+          }
+        }).loose_boxes == 1);
   CHECK(damaged([](auto& root) { root["children"][0]["geometricError"] = 1e9; }).errors_not_monotone > 0);
   CHECK(damaged([](auto& root) { root["children"][0]["children"].erase(0); }).seams_open > 0);
   std::ofstream{file} << good.substr(0, good.size() / 2);
@@ -234,6 +241,17 @@ TEST_CASE("Odd photographs are used, broken ones are refused or left out by name
   REQUIRE(!refused);
   CHECK(refused.error().code == ErrorCode::BadData);
   CHECK(refused.error().where.find("cut.jpg") != std::string::npos);
+}
+
+TEST_CASE("A texture coordinate that is no number is told with its file, and the outcrop is built all the same") {
+  const fs::path folder = scratch_folder("tileset_nan_uv");
+  std::ofstream{folder / "nan.obj"} << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  auto loaded = read_mesh(folder / "nan.obj");
+  REQUIRE(loaded);
+  REQUIRE(loaded.warnings().size() == 1);
+  CHECK(loaded.warnings().front().message.find("texture coordinate") != std::string::npos);
+  CHECK(loaded.warnings().front().where.find("nan.obj") != std::string::npos);
+  CHECK(write_outcrop(std::move(loaded->mesh), folder / "tiles").ok());
 }
 
 }  // namespace lodestone::test
