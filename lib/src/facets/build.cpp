@@ -125,7 +125,7 @@ class Builder {
   std::set<std::pair<std::uint32_t, std::uint32_t>> refused_;  // slides, at this price
   std::priority_queue<Entry> queue_;
   std::vector<std::uint32_t> later_;         // points to be looked at again
-  std::vector<std::uint32_t> surfaces_;      // with faces left
+  std::vector<std::uint32_t> surfaces_;      // with faces left, but for those of parts that follow
   std::array<std::vector<Known>, 2> known_;  // per direction and surface
   FacetShiftReport report_;
   std::optional<Openings> openings_;
@@ -238,6 +238,11 @@ void Builder::lead_kinds() {
       offer(p);
     }
   }
+  surfaces_.clear();
+  for (std::uint32_t s = 0; s < mesh_.surface_faces.size(); ++s) {
+    const auto& faces = mesh_.surface_faces[s];
+    if (!faces.empty() && !kinds_.follows(mesh_.faces[faces.front()])) surfaces_.push_back(s);
+  }
 }
 
 void Builder::slide_points(double price) {
@@ -324,7 +329,7 @@ bool Builder::shift_planes(double price) {
   });
   for (const std::uint32_t s : surfaces_) {
     if (context_.cancelled()) break;
-    if (!is_due(s, price) || kinds_.follows(mesh_.faces[mesh_.surface_faces[s].front()])) continue;
+    if (!is_due(s, price)) continue;
     std::erase_if(mesh_.surface_faces[s], [&](FaceId f) { return !mesh_.faces[f].live; });
     const std::uint64_t version = version_of(s);
     if (!is_stale(s, version, price)) continue;
@@ -450,15 +455,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   }
   drop_degenerate();
   if (options_.interior == Interior::DropFirst) drop_interior();
-  std::vector<FaceId> live;
-  for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
-    if (mesh_.faces[f].live) live.push_back(f);
-  }
-  openings_.emplace(mesh_, outline(mesh_, live).empty());
+  openings_.emplace(mesh_, is_closed(mesh_));
   for (auto& known : known_) known.resize(mesh_.surface_faces.size());
-  for (std::uint32_t s = 0; s < mesh_.surface_faces.size(); ++s) {
-    if (!mesh_.surface_faces[s].empty()) surfaces_.push_back(s);
-  }
   lead_kinds();
   double area = 0.0;
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) area += s.area_m2;

@@ -273,7 +273,7 @@ std::vector<FaceId> sides_of(const FacetMesh& mesh, const Opening& opening, cons
 // What stands in the opening becomes one pane in the plane of the wall, drawn between the corners of the hole: the pane
 // comes forward and hides the rest. Empty if the opening is not covered, if something holds it from outside, or if it
 // is flush.
-std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price, double& least_key) {
+std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price, Known& known) {
   const Plane plane = plane_of(mesh_, opening);
   const Shape shape{mesh_, opening, plane.normal};
   std::vector<FaceId> content;
@@ -301,6 +301,13 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
     }
   });
   std::sort(content.begin(), content.end());
+  // Much changes near an opening that is none of its business.
+  std::uint64_t state = content.size() + 1;
+  for (const FaceId f : content) state += mesh_.state_of(f);
+  for (const std::uint32_t p : opening.loop) state = 31 * state + mesh_.version[p];
+  if (state == known.content && known.pane_key > price) return std::nullopt;
+  known.content = state;
+  double& least_key = known.pane_key = std::numeric_limits<double>::infinity();
   if (content.size() + 2 < opening.loop.size()) return std::nullopt;
   double front = 0.0;
   double back = 0.0;
@@ -517,12 +524,13 @@ std::optional<OpeningJob> Openings::job(const Opening& opening, double price, do
   for (const std::uint32_t p : opening.loop) state = 31 * state + mesh_.version[p];
   Known& known = known_[opening.loop];
   if (known.state == state && known.key > price) return std::nullopt;
-  double least_key = std::numeric_limits<double>::infinity();
-  auto pane = flatten(opening, price, least_key);
+  auto pane = flatten(opening, price, known);
   // Once: between the two sides of a solid wall a pane would come and go for ever.
   if (pane && pane->patch.gone.empty() && known.has_come) pane.reset();
   auto closing = fill(mesh_, opening);
-  known = {state, std::min({key_of(pane), key_of(closing), least_key}), known.has_come};
+  known.pane_key = std::min(known.pane_key, key_of(pane));
+  known.state = state;
+  known.key = std::min(known.pane_key, key_of(closing));
   const auto fits = [&](const auto& job) { return job && job->key() <= price && job->error_m <= most_error_m; };
   if (fits(pane)) {
     known.has_come = known.has_come || pane->patch.gone.empty();

@@ -45,9 +45,11 @@ class Openings {
   struct Known {
     std::uint64_t state = 0;  // of the outline and of what is near
     double key = 0.0;
-    bool has_come = false;  // a pane, into its plane, though that saved no face
+    std::uint64_t content = 0;  // state of what stands in it
+    double pane_key = 0.0;      // of a pane made of that
+    bool has_come = false;      // a pane, into its plane, though that saved no face
   };
-  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price, double& least_key);
+  [[nodiscard]] std::optional<OpeningJob> flatten(const Opening& opening, double price, Known& known);
   [[nodiscard]] std::optional<OpeningJob> pane_of(const Opening& opening, const glm::dvec3& normal,
                                                   const std::vector<FaceId>& content, double depth_m, double price,
                                                   double& least_key) const;

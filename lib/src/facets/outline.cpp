@@ -26,7 +26,12 @@ double turn(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& normal) 
 }  // namespace
 
 bool is_sliver(const FacetMesh& mesh, const Face& face) {
-  return height_m(mesh.at(face.point[0]), mesh.at(face.point[1]), mesh.at(face.point[2])) < sliver_m;
+  const glm::dvec3 a = mesh.at(face.point[0]);
+  const glm::dvec3 b = mesh.at(face.point[1]);
+  const glm::dvec3 c = mesh.at(face.point[2]);
+  const double longest2 = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
+  const glm::dvec3 across = glm::cross(b - a, c - a);
+  return longest2 == 0.0 || glm::dot(across, across) < sliver_m * sliver_m * longest2;
 }
 
 bool lies_in(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m) {
@@ -48,6 +53,19 @@ std::vector<Edge> outline(const FacetMesh& mesh, const std::vector<FaceId>& face
     if (!std::binary_search(edges.begin(), edges.end(), Edge{e.second, e.first})) open.push_back(e);
   }
   return open;
+}
+
+bool is_closed(const FacetMesh& mesh) {
+  const auto has_back = [&](std::uint32_t a, std::uint32_t b) {
+    return std::any_of(mesh.faces_of[a].begin(), mesh.faces_of[a].end(), [&](FaceId g) {
+      const auto& q = mesh.faces[g].point;
+      return (q[0] == b && q[1] == a) || (q[1] == b && q[2] == a) || (q[2] == b && q[0] == a);
+    });
+  };
+  return std::all_of(mesh.faces.begin(), mesh.faces.end(), [&](const Face& face) {
+    const auto& p = face.point;
+    return !face.live || (has_back(p[0], p[1]) && has_back(p[1], p[2]) && has_back(p[2], p[0]));
+  });
 }
 
 std::vector<std::vector<std::uint32_t>> chain(const FacetMesh& mesh, std::vector<Edge> edges,

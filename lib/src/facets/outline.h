@@ -23,6 +23,9 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;  // between points, the fa
 // The edges of the faces that have none of them on the other side, ascending.
 [[nodiscard]] std::vector<Edge> outline(const FacetMesh& mesh, const std::vector<FaceId>& faces);
 
+// Whether every edge of a live face has one on the other side.
+[[nodiscard]] bool is_closed(const FacetMesh& mesh);
+
 // Closed chains of the edges; where several pass one point they are kept apart. Edges of open chains are left out.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> chain(const FacetMesh& mesh, std::vector<Edge> edges,
                                                             const glm::dvec3& normal);
