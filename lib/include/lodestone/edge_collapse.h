@@ -58,7 +58,9 @@ struct EdgeCollapseOptions {
   /// Faces count in the cost by the sharpness of the vertex they lie around (how far the normals there differ:
   /// equations 4 to 7 of Ao et al. 2025) to this power: 1 keeps ridges and hollows of rock longer than plains, 0 = off.
   double sharpness_power = 0.0;
-  /// Edges with a larger dihedral angle are kept as features; radians, pi = off.
+  /// Edges with a larger dihedral angle are kept as features: leaving their line costs, and vertices on them go along
+  /// them only. Angles are those of the mesh as it stands, so a crease that coarse faces no longer show is none.
+  /// Radians, pi = off.
   double sharp_edge_rad = 3.141592653589793;
   /// Detached parts whose size falls below the error reached may vanish, as records of their own.
   bool prune_parts = true;
