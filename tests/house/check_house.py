@@ -20,7 +20,7 @@ LIB_ARROWS = {
     "generate": {"base", "geometry", "mesh"},
     "image": {"base"},
     "perception": {"base", "geometry", "mesh", "metrics"},
-    "facets": {"base", "geometry", "mesh", "progressive"},
+    "facets": {"base", "geometry", "mesh", "progressive", "collapse"},
     "mixed": {"base", "mesh", "progressive", "collapse", "facets"},
     "partition": {"base", "geometry", "mesh"},
     "graph": {"base"},

@@ -143,6 +143,7 @@ struct FacetShiftReport {
   std::uint32_t parts_sunk = 0;          ///< of these, flat into a plane that they hung on; the others shrank
   std::uint32_t points_merged = 0;       ///< corner points that slid within their planes onto a neighbour
   std::uint32_t tilting_collapses = 0;   ///< the same where some face had to leave its direction
+  std::uint32_t last_collapses = 0;      ///< by the engine of edge collapse with planes held, from 3 % of the faces on
   std::string sentence;                  ///< what holds the model above the target, empty if it was reached
   bool reached_block = false;            ///< the base is a closed prism: upright walls, level roof and ground
   std::string block_sentence;            ///< what holds the model from it, empty if it was reached

@@ -22,6 +22,7 @@
 #include "facets/joiner.h"
 #include "facets/judge.h"
 #include "facets/kinds.h"
+#include "facets/last_stretch.h"
 #include "facets/openings.h"
 #include "facets/outline.h"
 #include "facets/parts.h"
@@ -103,8 +104,14 @@ class Builder {
   [[nodiscard]] std::string why_no_block() const;
   [[nodiscard]] bool done() const {
     return mesh_.live_faces <= options_.target_triangles || block_due_ || block_.must_come(mesh_) ||
-           context_.cancelled();
+           context_.cancelled() || hands_over();
   }
+  // A closed model would come to cross itself: there the loop goes on to the end.
+  [[nodiscard]] bool hands_over() const {
+    return !closed_ && block_.exists() &&
+           mesh_.live_faces <= last_stretch_share * static_cast<double>(mesh_.faces.size());
+  }
+  void collapse_rest();
 
   const FacetShiftOptions& options_;
   const Context& context_;
@@ -116,6 +123,7 @@ class Builder {
   Planner planner_;
   PartFinder parts_;
   Block block_;
+  bool closed_ = true;
   bool block_due_ = false;  // the next slide would take a face that it needs
   CrossingFinder crossings_;
   Kinds kinds_;
@@ -446,6 +454,14 @@ std::string Builder::why_no_block() const {
   return "too few vertices are left for the corners of the block";
 }
 
+void Builder::collapse_rest() {
+  float error_m = 0.0F;
+  for (std::uint32_t p = 0; p < mesh_.point_count(); ++p) {
+    if (!mesh_.faces_of[p].empty()) error_m = std::max(error_m, mesh_.deviation_m[p]);
+  }
+  report_.last_collapses = collapse_the_rest(mesh_, options_, block_, error_m, context_, log_);
+}
+
 progressive::EditLog Builder::run(FacetShiftReport& report) {
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) {
     ++report_.surfaces;
@@ -455,7 +471,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   }
   drop_degenerate();
   if (options_.interior == Interior::DropFirst) drop_interior();
-  openings_.emplace(mesh_, is_closed(mesh_));
+  closed_ = is_closed(mesh_);
+  openings_.emplace(mesh_, closed_);
   for (auto& known : known_) known.resize(mesh_.surface_faces.size());
   lead_kinds();
   double area = 0.0;
@@ -480,6 +497,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     context_.report("facet shift",
                     1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
   }
+  if (hands_over()) collapse_rest();
   if (!report_.reached_block) report_.reached_block = become_block() || is_block(mesh_);
   if (!report_.reached_block) report_.block_sentence = why_no_block();
   if (mesh_.live_faces > options_.target_triangles && options_.target_triangles != 0) {

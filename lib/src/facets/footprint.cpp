@@ -25,7 +25,9 @@ constexpr double least_agreement = 0.6;  // of footprint and coverage: intersect
 constexpr double corner_price = 0.015;   // of agreement that a corner more must bring
 constexpr double least_loop_share = 0.03;
 constexpr double high_share = 0.8;    // so much of the ground is covered lower than what counts as high
-constexpr double ground_ratio = 0.2;  // of that height: lower is no building
+constexpr double lowest_ratio = 0.2;  // of that height: lower is the ground
+constexpr double annex_ratio = 0.5;   // lower is an annex, which a block may leave out
+constexpr double least_gain = 0.1;    // of the volume by which block and building differ
 constexpr int raster_cells = 192;     // along the longer side
 
 struct Line {
@@ -41,7 +43,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 // The highest face over each cell of the ground.
 class Raster {
  public:
-  explicit Raster(const Mesh& mesh) {
+  // Lower than `ground_ratio` of the height is no building.
+  Raster(const Mesh& mesh, double ground_ratio) {
     const Box box = bounds(mesh);
     low_ = {box.min.x, box.min.y};
     const double extent = std::max(box.max.x - box.min.x, box.max.y - box.min.y);
@@ -50,7 +53,7 @@ class Raster {
     ny_ = static_cast<int>((box.max.y - box.min.y) / cell_m_) + 1;
     heights_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), empty_height);
     for (FaceId f = 0; f < mesh.triangle_count(); ++f) draw(mesh, f);
-    forget_ground(box.min.z);
+    forget_ground(box.min.z, ground_ratio);
   }
 
   // Calls visit(place, height) for all cells whose middle lies in the box; height is `empty_height` where nothing is.
@@ -78,7 +81,7 @@ class Raster {
   }
 
   // The ground around a building may come with it, as a slab or a terrace.
-  void forget_ground(double low_m) {
+  void forget_ground(double low_m, double ground_ratio) {
     std::vector<double> full;
     std::copy_if(heights_.begin(), heights_.end(), std::back_inserter(full), [](double h) { return h > empty_height; });
     if (full.empty()) return;
@@ -350,14 +353,20 @@ double agreement(const Raster& raster, Footprint& footprint) {
 
 }  // namespace
 
-Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surfaces, std::uint32_t most_corners) {
+namespace {
+
+// What either has and the other has not.
+double difference_m3(const Raster& raster, const Footprint& footprint) {
+  double sum = 0.0;
+  raster.visit_all([&](const glm::dvec2& p, double height) {
+    const double block_m = contains(footprint, p) ? footprint.high_m : footprint.low_m;
+    sum += std::abs(std::max(height, footprint.low_m) - block_m) * raster.cell_area_m2();
+  });
+  return sum;
+}
+
+Footprint find_on(const Raster& raster, const std::vector<Line>& lines, std::uint32_t most_corners) {
   Footprint footprint;
-  std::vector<Line> lines = wall_lines(mesh, surfaces);
-  if (lines.empty()) {
-    footprint.sentence = "there are no walls to stand a block on";
-    return footprint;
-  }
-  const Raster raster{mesh};
   const glm::dvec2 along = lines.front().normal;
   const glm::dvec2 across{-along.y, along.x};
   const auto [low_a, high_a] = reach_m(raster, along);
@@ -389,10 +398,26 @@ Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surface
   }
   if (footprint.corners.empty()) {
     footprint.sentence = "what it covers of the ground is not one piece between its walls";
-    return footprint;
   }
-  footprint.low_m = bounds(mesh).min.z;
   return footprint;
+}
+
+}  // namespace
+
+Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surfaces, std::uint32_t most_corners) {
+  const std::vector<Line> lines = wall_lines(mesh, surfaces);
+  if (lines.empty()) {
+    Footprint nothing;
+    nothing.sentence = "there are no walls to stand a block on";
+    return nothing;
+  }
+  const Raster raster{mesh, lowest_ratio};
+  Footprint whole = find_on(raster, lines, most_corners);
+  Footprint body = find_on(Raster{mesh, annex_ratio}, lines, most_corners);
+  whole.low_m = body.low_m = bounds(mesh).min.z;
+  if (!whole.sentence.empty() || !body.sentence.empty()) return whole;
+  const bool better = difference_m3(raster, body) < (1.0 - least_gain) * difference_m3(raster, whole);
+  return better ? body : whole;
 }
 
 }  // namespace lodestone::facets
