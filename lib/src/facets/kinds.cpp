@@ -111,10 +111,10 @@ double Kinds::apart_m(const Shape& a) const {
 
 std::uint32_t Kinds::find_kind(double& apart) const {
   const double margin = tolerance_m * static_cast<double>(shape_.points.size());
-  const double low = std::floor((shape_.size_m - margin) / cell_m);
-  const double high = std::floor((shape_.size_m + margin) / cell_m);
-  for (double cell = low; cell <= high; ++cell) {
-    const auto at = by_hash_.find(mix(shape_.hash, static_cast<std::uint64_t>(std::max(cell, 0.0))));
+  const auto low = static_cast<std::uint64_t>(std::max(shape_.size_m - margin, 0.0) / cell_m);
+  const auto high = static_cast<std::uint64_t>((shape_.size_m + margin) / cell_m);
+  for (std::uint64_t cell = low; cell <= high; ++cell) {
+    const auto at = by_hash_.find(mix(shape_.hash, cell));
     if (at == by_hash_.end()) continue;
     for (const std::uint32_t kind : at->second) {
       apart = apart_m(kinds_[kind].shape);
@@ -136,7 +136,7 @@ void Kinds::update(const std::vector<std::vector<FaceId>>& parts) {
     points_.insert(points_.end(), shape_.points.begin(), shape_.points.end());
     const std::uint32_t kind = find_kind(member.apart_m);
     if (kind == none) {
-      const auto cell = static_cast<std::uint64_t>(std::floor(shape_.size_m / cell_m));
+      const auto cell = static_cast<std::uint64_t>(shape_.size_m / cell_m);
       by_hash_[mix(shape_.hash, cell)].push_back(static_cast<std::uint32_t>(kinds_.size()));
       kinds_.push_back({shape_, {member}});
       continue;
