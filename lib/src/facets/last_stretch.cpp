@@ -16,9 +16,10 @@ namespace {
 
 constexpr double first_error_m = 0.02;
 constexpr double error_step = 1.3;
-constexpr double quota = 0.005;       // of the points in a pass: near to strict order, which few points can afford
-constexpr double plane_arm_m = 9.0;   // that of the loop's own slides
-constexpr double claim_factor = 2.0;  // the engine's claims times this, added to what was claimed before
+constexpr std::size_t few_faces = 1'000;
+constexpr double strict_quota = 0.005;  // of the points in a pass: near to strict order, which few can afford
+constexpr double plane_arm_m = 9.0;     // that of the loop's own slides
+constexpr double claim_factor = 2.0;    // the engine's claims times this, added to what was claimed before
 constexpr SurfaceTolerance tolerance{.angle_rad = 0.0175, .offset_m = 0.004};
 
 // What is left of the building as a mesh of its own, which follows the engine's records.
@@ -65,7 +66,9 @@ class Rest final : public collapse::Sink {
       stage.max_error_m = limit_m;
       stage.target_triangles = target;
       collapse::run(rest_, stage, context, *this,
-                    {.deviation_m = strayed_m_, .quota = quota, .scruples = collapse::Scruples::None});
+                    {.deviation_m = strayed_m_,
+                     .quota = face_.size() < few_faces ? strict_quota : 0.0,
+                     .scruples = collapse::Scruples::None});
     }
     hand_back();
     return record_count_;
