@@ -41,9 +41,9 @@ Result<Transform> place_on_globe(const glm::dvec3& origin, const std::string& cr
     const glm::dvec3 along = (to_earth(origin + step) - to_earth(origin - step)) / (2.0 * step_m);
     // A system in degrees, or a place far outside its area, stretches a metre to something else.
     if (!(glm::length(along) > 0.9 && glm::length(along) < 1.1)) return unknown;
-    for (int k = 0; k < 3; ++k) result[static_cast<std::size_t>(4 * axis + k)] = along[k];
+    for (int k = 0; k < 3; ++k) result[4 * static_cast<std::size_t>(axis) + static_cast<std::size_t>(k)] = along[k];
   }
-  for (int k = 0; k < 3; ++k) result[static_cast<std::size_t>(12 + k)] = place[k];
+  for (int k = 0; k < 3; ++k) result[12 + static_cast<std::size_t>(k)] = place[k];
   result[15] = 1.0;
   return result;
 }

@@ -5,6 +5,7 @@
 // coarser tiles of several images need of it waits in the folder `work` until the end.
 #define XXH_INLINE_ALL  // header only
 #include <xxhash.h>
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <fstream>
@@ -412,8 +413,8 @@ Status OutcropWriter::write_joined(std::uint32_t tile) {
     if (!loaded) return loaded.error();
     images.push_back(std::move(*loaded));
   }
-  std::vector<const SegmentImages*> pointers;
-  for (const SegmentImages& one : images) pointers.push_back(&one);
+  std::vector<const SegmentImages*> pointers(images.size());
+  std::transform(images.begin(), images.end(), pointers.begin(), [](const SegmentImages& one) { return &one; });
   return write_tile(tile, pointers);
 }
 

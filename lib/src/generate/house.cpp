@@ -19,10 +19,10 @@ std::uint64_t least_triangles(const House& house) {
 
 Tier tier(std::uint32_t index, std::uint64_t seed) {
   static constexpr Tier tiers[] = {
-      {2, 3, 2, false, false, 0.0, false}, {2, 3, 2, true, false, 0.0, false},  {2, 4, 3, true, true, 0.0, false},
-      {3, 5, 3, true, true, 0.0, true},    {3, 5, 3, true, true, 0.34, true},   {3, 6, 4, true, true, 0.28, true},
-      {4, 7, 4, true, true, 0.25, true},   {4, 9, 5, true, true, 0.25, true},   {5, 13, 6, true, true, 0.22, true},
-      {5, 19, 8, true, true, 0.20, true},  {6, 27, 10, true, true, 0.20, true}, {7, 39, 14, true, true, 0.20, true}};
+      {2, 3, 2, false, false, false, 0.0}, {2, 3, 2, true, false, false, 0.0},  {2, 4, 3, true, true, false, 0.0},
+      {3, 5, 3, true, true, true, 0.0},    {3, 5, 3, true, true, true, 0.34},   {3, 6, 4, true, true, true, 0.28},
+      {4, 7, 4, true, true, true, 0.25},   {4, 9, 5, true, true, true, 0.25},   {5, 13, 6, true, true, true, 0.22},
+      {5, 19, 8, true, true, true, 0.20},  {6, 27, 10, true, true, true, 0.20}, {7, 39, 14, true, true, true, 0.20}};
   Tier t = tiers[std::min<std::size_t>(index, std::size(tiers) - 1)];
   if (index > 0 && seed % 2 == 1 && t.bays % 2 == 0) ++t.bays;  // an odd number has the door in the middle
   return t;

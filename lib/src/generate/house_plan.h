@@ -13,8 +13,8 @@ struct Tier {
   int storeys, bays, side_bays;
   bool trim;  // sills, surrounds, cornice, shutters
   bool balconies;
-  double tile_m;  // width of roof tiles; 0 = painted only
   bool dentils;   // dentils, quoins
+  double tile_m;  // width of roof tiles; 0 = painted only
 };
 
 struct HousePlan {

@@ -105,19 +105,19 @@ double boulders(std::uint32_t seed, double x, double y) noexcept {
   return top;
 }
 
-NoiseTable::NoiseTable(std::uint32_t seed) : values_(std::size_t{size_} * size_) {
+NoiseTable::NoiseTable(std::uint32_t seed) : values_(std::size_t{side} * side) {
   float largest = 0.0F;
-  for (std::uint32_t y = 0; y < size_; ++y) {
-    for (std::uint32_t x = 0; x < size_; ++x) {
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) {
       double sum = 0.0;
       double amplitude = 1.0;
       for (std::int32_t cells = 16; cells <= 256; cells *= 2) {
-        const double scale = static_cast<double>(cells) / size_;
+        const double scale = static_cast<double>(cells) / side;
         sum += amplitude *
                periodic_noise(seed + static_cast<std::uint32_t>(cells), (x + 0.37) * scale, (y + 0.37) * scale, cells);
         amplitude *= 0.62;
       }
-      float& value = values_[std::size_t{y} * size_ + x];
+      float& value = values_[std::size_t{y} * side + x];
       value = static_cast<float>(sum);
       largest = std::max(largest, std::abs(value));
     }
@@ -126,15 +126,15 @@ NoiseTable::NoiseTable(std::uint32_t seed) : values_(std::size_t{size_} * size_)
 }
 
 float NoiseTable::at(double x, double y) const noexcept {
-  const double sx = (x - std::floor(x)) * size_;
-  const double sy = (y - std::floor(y)) * size_;
+  const double sx = (x - std::floor(x)) * side;
+  const double sy = (y - std::floor(y)) * side;
   const auto ix = static_cast<std::uint32_t>(sx);
   const auto iy = static_cast<std::uint32_t>(sy);
   const auto fx = static_cast<float>(sx - ix);
   const auto fy = static_cast<float>(sy - iy);
-  constexpr std::uint32_t mask = size_ - 1;
-  const float* row = &values_[std::size_t{iy & mask} * size_];
-  const float* next = &values_[std::size_t{(iy + 1) & mask} * size_];
+  constexpr std::uint32_t mask = side - 1;
+  const float* row = &values_[std::size_t{iy & mask} * side];
+  const float* next = &values_[std::size_t{(iy + 1) & mask} * side];
   const std::uint32_t x0 = ix & mask;
   const std::uint32_t x1 = (ix + 1) & mask;
   const float low = row[x0] + (row[x1] - row[x0]) * fx;

@@ -50,7 +50,7 @@ class NoiseTable {
   [[nodiscard]] float at(double x, double y) const noexcept;
 
  private:
-  static constexpr std::uint32_t size_ = 512;
+  static constexpr std::uint32_t side = 512;
   std::vector<float> values_;
 };
 

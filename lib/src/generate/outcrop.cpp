@@ -33,10 +33,10 @@ class StrataColors {
     const auto& beds = field.beds();
     low_m_ = beds.front().base_m;
     const double high_m = beds.back().base_m + beds.back().thickness_m;
-    per_m_ = count_ / (high_m - low_m_);
-    colors_.reserve(count_);
+    per_m_ = color_count / (high_m - low_m_);
+    colors_.reserve(color_count);
     std::size_t bed = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
+    for (std::size_t i = 0; i < color_count; ++i) {
       const double s = low_m_ + (static_cast<double>(i) + 0.5) / per_m_;
       while (bed + 1 < beds.size() && beds[bed + 1].base_m <= s) ++bed;
       const double lamina =
@@ -47,11 +47,11 @@ class StrataColors {
   }
   [[nodiscard]] const glm::vec3& at(float strata_m) const noexcept {
     const double place = (strata_m - low_m_) * per_m_;
-    return colors_[static_cast<std::size_t>(std::clamp(place, 0.0, count_ - 1.0))];
+    return colors_[static_cast<std::size_t>(std::clamp(place, 0.0, color_count - 1.0))];
   }
 
  private:
-  static constexpr std::size_t count_ = 16384;
+  static constexpr std::size_t color_count = 16384;
   double low_m_ = 0;
   double per_m_ = 0;
   std::vector<glm::vec3> colors_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -26,7 +27,8 @@ namespace lodestone::generate {
 // `color` in sRGB, 0..1, clamped.
 inline void put(Image& image, std::uint32_t x, std::uint32_t y, const glm::vec3& color) noexcept {
   std::uint8_t* texel = image.at(x, y);
-  for (int c = 0; c < 3; ++c) texel[c] = static_cast<std::uint8_t>(std::clamp(color[c], 0.0F, 1.0F) * 255.0F + 0.5F);
+  for (int c = 0; c < 3; ++c)
+    texel[c] = static_cast<std::uint8_t>(std::lround(std::clamp(color[c], 0.0F, 1.0F) * 255.0F));
 }
 
 // Completes a sheet: its pixels, if they are wanted.

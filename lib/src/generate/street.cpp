@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/rng.h"
 #include "generate/house_plan.h"
@@ -88,7 +89,9 @@ class StreetGround {
         const double x = x0 + length * (i + 0.5) / stones;
         box({x, side * (road_half_m + 0.5 * kerb_m), -0.5}, {length / stones - 0.015, kerb_m, 0.5}, {kerb_, pavement_});
       }
-      for (double x = x0 + 6.0 + 6.0 * side; x < x1 - 2.0; x += 24.0) lamp({x, side * (edge + 0.5), -0.05});
+      const double first = x0 + 6.0 + 6.0 * side;
+      const int lamps = static_cast<int>(std::ceil((x1 - 2.0 - first) / 24.0));
+      for (int i = 0; i < lamps; ++i) lamp({first + 24.0 * i, side * (edge + 0.5), -0.05});
     }
   }
   // Appends it; lamps are turned as finely as it takes to use up `triangles`.
