@@ -100,7 +100,12 @@ using ReadFunction = Result<LoadedMesh> (*)(const Input&, const ReadOptions&, co
 // The reader for these bytes, told by the first 4096 of them, else by the name's extension; null if none fits.
 [[nodiscard]] ReadFunction find_reader(const Input& input);
 
-// read_mesh behind the door: finds the reader, runs it, validates what it returns.
+// Runs a reader, holds its caps, tidies and validates what it returns. In a file of its own: who reads only tiles does
+// not link the other readers and their libraries.
+[[nodiscard]] Result<LoadedMesh> read_with(ReadFunction reader, const Input& input, const ReadOptions& options,
+                                           const Context& context);
+
+// read_mesh behind the door: finds the reader and runs it.
 [[nodiscard]] Result<LoadedMesh> read_input(const Input& input, const ReadOptions& options, const Context& context);
 
 }  // namespace lodestone

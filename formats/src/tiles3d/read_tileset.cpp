@@ -155,7 +155,7 @@ Result<Mesh> parse_tile(std::span<const std::uint8_t> bytes, const std::filesyst
   const auto payload = payload_of(bytes, file.string());
   if (!payload) return payload.error();
   const Input glb = Input::from_bytes(*payload, file.stem().string() + ".glb", file.parent_path());
-  auto loaded = read_input(glb, options, {});
+  auto loaded = read_with(read_gltf, glb, options, {});
   if (!loaded) return Error{loaded.error().code, loaded.error().message, file.string()};
   return std::move(loaded->mesh);
 }

@@ -162,7 +162,8 @@ void check_building(const std::string& id, Costs costs = Costs::Same) {
 }  // namespace
 
 TEST_CASE("real building 4018215: the metric falls, the plan is cheap, its levels look like the source") {
-  check_building("4018215");
+  // Whole openings go with one record: of equal intervals of 68 m the plan costs 96.6 % of the other, or more than it.
+  check_building("4018215", Costs::Steps);
 }
 TEST_CASE("real building 4018267: the metric falls, the plan is cheap, its levels look like the source") {
   check_building("4018267");
