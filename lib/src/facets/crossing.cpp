@@ -68,7 +68,7 @@ CrossingFinder::CrossingFinder(const FacetMesh& mesh, const PartFinder& parts)
 void CrossingFinder::measure(FaceId f) {
   const Face& face = mesh_.faces[f];
   if (!face.live) {
-    boxes_[f] = {glm::vec3{std::numeric_limits<float>::infinity()}, glm::vec3{-std::numeric_limits<float>::infinity()}};
+    boxes_[f] = {};
     return;
   }
   const glm::vec3& a = mesh_.place[face.point[0]];
@@ -127,13 +127,8 @@ bool CrossingFinder::makes_crossing(const Moved& moved) const {
                return g != mover.first && cross(mover.second, other) && !cross(now(mover.first), now(g));
              });
     };
-    const glm::vec3 low{all.low};
-    const glm::vec3 high{all.high};
-    const auto is_near = [&](FaceId g) {
-      const Box& box = boxes_[g];
-      return box.low.x <= high.x && box.high.x >= low.x && box.low.y <= high.y && box.high.y >= low.y &&
-             box.low.z <= high.z && box.high.z >= low.z;
-    };
+    const FloatBox around{glm::vec3{all.low}, glm::vec3{all.high}};
+    const auto is_near = [&](FaceId g) { return boxes_[g].touches(around); };
     bool found = false;
     const std::vector<FaceId>& part = parts_.part_of(first);
     if (part.size() <= small_part) {

@@ -7,6 +7,7 @@
 
 #include "facets/face_index.h"
 #include "facets/facet_mesh.h"
+#include "facets/float_box.h"
 #include "facets/parts.h"
 
 namespace lodestone::facets {
@@ -25,13 +26,10 @@ class CrossingFinder {
  private:
   const FacetMesh& mesh_;
   const PartFinder& parts_;
-  FaceIndex index_;  // of the faces of large parts; small ones are walked through
-  struct Box {
-    glm::vec3 low{0.0F}, high{0.0F};
-  };
+  FaceIndex index_;                     // of the faces of large parts; small ones are walked through
   std::optional<std::uint64_t> edits_;  // there had been at the last start
   void measure(FaceId f);
-  std::vector<Box> boxes_;  // per face; of dead ones beyond everything
+  std::vector<FloatBox> boxes_;  // per face; of dead ones empty
 };
 
 }  // namespace lodestone::facets

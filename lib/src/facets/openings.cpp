@@ -501,9 +501,9 @@ Openings::Openings(const FacetMesh& mesh, bool closed)
 void Openings::update() { cells_.update(walls_.update()); }
 
 // All that a pane may be made of.
-PointCells::Box Openings::box_of(const Opening& opening) const {
+FloatBox Openings::box_of(const Opening& opening) const {
   const Plane plane = plane_of(mesh_, opening);
-  PointCells::Box box;
+  FloatBox box;
   for (const std::uint32_t p : opening.loop) {
     box.add(glm::vec3{mesh_.at(p) - plane.normal * most_depth_m});
     box.add(glm::vec3{mesh_.at(p) + plane.normal * most_height_m});

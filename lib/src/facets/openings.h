@@ -56,7 +56,7 @@ class Openings {
   [[nodiscard]] std::optional<OpeningJob> recess(const Opening& opening, const glm::dvec3& normal,
                                                  const std::vector<FaceId>& content, double price,
                                                  double& least_key) const;
-  [[nodiscard]] PointCells::Box box_of(const Opening& opening) const;
+  [[nodiscard]] FloatBox box_of(const Opening& opening) const;
 
   const FacetMesh& mesh_;
   bool closed_;

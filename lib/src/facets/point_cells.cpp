@@ -10,7 +10,7 @@ constexpr float most_cells = 256.0F;  // along the longest side
 }  // namespace
 
 PointCells::PointCells(const FacetMesh& mesh) : mesh_(mesh), seen_at_(mesh.place) {
-  Box box;
+  FloatBox box;
   for (const glm::vec3& p : mesh.place) box.add(p);
   if (!mesh.place.empty()) {
     low_ = box.low;
@@ -56,7 +56,7 @@ void PointCells::update(const std::vector<FaceId>& changed) {
   sort_points();
 }
 
-std::uint64_t PointCells::last_change(const Box& box) const {
+std::uint64_t PointCells::last_change(const FloatBox& box) const {
   std::uint32_t last = 0;
   visit_cells(box, [&](std::size_t cell) { last = std::max(last, changed_at_[cell]); });
   return last;

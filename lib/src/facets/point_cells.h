@@ -7,32 +7,21 @@
 #include <vector>
 
 #include "facets/facet_mesh.h"
+#include "facets/float_box.h"
 
 namespace lodestone::facets {
 
 class PointCells {
  public:
-  struct Box {
-    glm::vec3 low{std::numeric_limits<float>::infinity()};
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};
-    void add(const glm::vec3& p) noexcept {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-    [[nodiscard]] bool contains(const glm::vec3& p) const noexcept {
-      return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
-    }
-  };
-
   explicit PointCells(const FacetMesh& mesh);
 
   // Says which faces have changed since the last call.
   void update(const std::vector<FaceId>& changed);
-  [[nodiscard]] std::uint64_t last_change(const Box& box) const;
+  [[nodiscard]] std::uint64_t last_change(const FloatBox& box) const;
 
   // Calls visit(point) for all points that were in the box at the last update.
   template <class Visit>
-  void visit_points(const Box& box, Visit visit) const {
+  void visit_points(const FloatBox& box, Visit visit) const {
     visit_cells(box, [&](std::size_t cell) {
       for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
         if (box.contains(at_[i])) visit(points_[i]);
@@ -42,7 +31,7 @@ class PointCells {
 
  private:
   template <class Visit>
-  void visit_cells(const Box& box, Visit visit) const {
+  void visit_cells(const FloatBox& box, Visit visit) const {
     const glm::ivec3 low = cell_of(box.low);
     const glm::ivec3 high = cell_of(box.high);
     for (int z = low.z; z <= high.z; ++z) {

@@ -125,7 +125,7 @@ Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t p
         *grove, p, part, [&] { return least; },
         [&](const Slot& slot) {
           const auto& [a, b, c] = slot.corner;
-          const Box box{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+          const FloatBox box{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
           if (box.squared_distance(p) < least) consider(slot.face, a, b, c);
           return true;
         });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "facets/facet_mesh.h"
+#include "facets/float_box.h"
 #include "geometry/bvh.h"
 
 namespace lodestone::facets {
@@ -33,24 +34,12 @@ class Surroundings {
  private:
   // The faces as they were when the tree was built; those that went or moved since are left out. The tree is about
   // boxes of few faces of one part each, so that ten thousand tiles are ten thousand things, not a hundred thousand.
-  struct Box {
-    glm::vec3 low{std::numeric_limits<float>::infinity()};
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};
-    void add(const glm::vec3& p) noexcept {
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-    }
-    [[nodiscard]] double squared_distance(const glm::dvec3& p) const noexcept {
-      const glm::dvec3 d = glm::max(glm::max(glm::dvec3{low} - p, p - glm::dvec3{high}), glm::dvec3{0.0});
-      return glm::dot(d, d);
-    }
-  };
   struct Slot {
     std::array<glm::vec3, 3> corner{};
     FaceId face = none;  // none if it does not stand any more
   };
   struct Bundle {
-    Box box;
+    FloatBox box;
     std::uint32_t first = 0, count = 0;  // in slots
   };
   struct Grove {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "blocks.h"
+#include "checked_model.h"
 #include "data.h"
 #include "directions.h"
 #include "small_house.h"
@@ -18,10 +19,7 @@ namespace {
 void check_build(const Mesh& mesh) {
   const auto built = build_by_facet_shift(mesh);
   REQUIRE(built.ok());
-  const ModelReport report = validate(*built->model);
-  CHECK(report.fault.empty());
-  CHECK((report.exact && report.monotone && report.in_use_consistent));
-  CHECK(compare_with_source(*built->model, mesh) == "");
+  test::check_model(*built->model, mesh);
   // The block, or exactly what holds it from that.
   CHECK(built->report.reached_block == built->report.block_sentence.empty());
   const Level finest = built->model->record_count();

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 
+#include "checked_model.h"
 #include "crossings.h"
 #include "shapes.h"
 #include "small_house.h"
@@ -15,22 +16,13 @@
 namespace lodestone {
 namespace {
 
-void check_model(const ProgressiveModel& model, const Mesh& source) {
-  const ModelReport report = validate(model);
-  CHECK(report.fault.empty());
-  CHECK(report.exact);
-  CHECK(report.monotone);
-  CHECK(report.in_use_consistent);
-  CHECK(compare_with_source(model, source) == "");
-}
-
 TEST_CASE("a bulge and a depression come into the wall in one record, at the distance they move") {
   for (const float depth_m : {0.2F, -0.3F}) {
     CAPTURE(depth_m);
     const Mesh mesh = test::wall_with_panel(depth_m);
     const auto built = build_by_facet_shift(mesh);
     REQUIRE(built.ok());
-    check_model(*built->model, mesh);
+    test::check_model(*built->model, mesh);
     CHECK(built->report.shifts + built->report.openings_flattened == 1);
     const Level flat = built->model->level_of_triangles(2);
     const Mesh end = built->model->extract(flat);
@@ -81,7 +73,7 @@ TEST_CASE("every family of meshes builds, exact and monotone") {
     CAPTURE(name);
     const auto built = build_by_facet_shift(mesh);
     REQUIRE(built.ok());
-    check_model(*built->model, mesh);
+    test::check_model(*built->model, mesh);
   }
 }
 
@@ -91,7 +83,7 @@ TEST_CASE("houses of every roof keep their planes and stay closed") {
     const Mesh house = test::small_house(10'000, roof);
     const auto built = build_by_facet_shift(house);
     REQUIRE(built.ok());
-    check_model(*built->model, house);
+    test::check_model(*built->model, house);
     for (const double ratio : {0.5, 0.2, 0.1, 0.05}) {
       const auto wanted = static_cast<std::uint32_t>(ratio * house.triangle_count());
       const Mesh level = built->model->extract(built->model->level_of_triangles(wanted));
@@ -151,7 +143,7 @@ TEST_CASE("points within the tolerance move as one, and the finest level keeps t
   CHECK(apart->report.shifts + apart->report.openings_flattened == 0);
   const auto welded = build_by_facet_shift(mesh, {.weld_tolerance_m = 0.002, .t_junction_tolerance_m = 0.0});
   REQUIRE(welded.ok());
-  check_model(*welded->model, mesh);
+  test::check_model(*welded->model, mesh);
   CHECK(welded->report.shifts + welded->report.openings_flattened == 1);
   const Level flat = welded->model->level_of_triangles(2);
   CHECK(welded->model->extract(flat).triangle_count() == 2);
@@ -164,7 +156,7 @@ TEST_CASE("together, the windows of a facade are one record, and the model ends 
   const auto single = build_by_facet_shift(house);
   const auto joined = build_by_facet_shift(house, {.order = ShiftOrder::Together});
   REQUIRE((single.ok() && joined.ok()));
-  check_model(*joined->model, house);
+  test::check_model(*joined->model, house);
   const std::uint32_t openings = joined->report.openings_flattened + joined->report.openings_filled;
   CHECK(openings > 10);
   CHECK(joined->model->record_count() + openings / 2 < single->model->record_count());
@@ -200,7 +192,7 @@ TEST_CASE("rooms that cannot be seen go first, at no error, and nothing else doe
   for (Material& material : house.materials) material.base_color.a = 1.0F;
   const auto built = build_by_facet_shift(house, {.interior = Interior::DropFirst});
   REQUIRE(built.ok());
-  check_model(*built->model, house);
+  test::check_model(*built->model, house);
   CHECK(built->report.interior_faces >= 12);
   CHECK(built->report.interior_faces < outside / 4);
   const Level level = built->model->level_of_triangles(house.triangle_count() - built->report.interior_faces);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "blocks.h"
+#include "checked_model.h"
 #include "data.h"
 #include "directions.h"
 
@@ -40,10 +41,7 @@ TEST_CASE("all real buildings build exactly, and the richer ones keep their plan
     const Mesh& source = loaded->mesh;
     const auto built = build_by_facet_shift(source);
     REQUIRE(built.ok());
-    const ModelReport report = validate(*built->model);
-    CHECK(report.fault.empty());
-    CHECK((report.exact && report.monotone && report.in_use_consistent));
-    CHECK(compare_with_source(*built->model, source) == "");
+    test::check_model(*built->model, source);
     CHECK(built->report.reached_block);
     test::check_block(built->model->extract(0));
     for (Level level = 0; level < built->model->record_count(); level += built->model->record_count() / 4 + 1) {
@@ -135,10 +133,7 @@ TEST_CASE("a damaged building gives a valid model") {
       damage(mesh, random);
       const auto built = build_by_facet_shift(mesh);
       REQUIRE(built.ok());
-      const ModelReport report = validate(*built->model);
-      CHECK(report.fault.empty());
-      CHECK((report.exact && report.monotone && report.in_use_consistent));
-      CHECK(compare_with_source(*built->model, mesh) == "");
+      test::check_model(*built->model, mesh);
       mesh.vertices.positions[0].x = std::numeric_limits<float>::quiet_NaN();
       CHECK_FALSE(build_by_facet_shift(mesh).ok());
     }
