@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/disjoint_sets.h"
+#include "facets/parts.h"
 
 namespace lodestone::facets {
 namespace {
@@ -40,23 +40,10 @@ struct Site {
 
 Site survey(const FacetMesh& mesh) {
   Site site;
-  DisjointSets sets{mesh.point_count()};
-  for (const Face& f : mesh.faces) {
-    if (!f.live) continue;
-    sets.join(f.point[0], f.point[1]);
-    sets.join(f.point[0], f.point[2]);
-  }
-  std::vector<std::uint32_t> part_of_root(mesh.point_count(), none);
-  for (const Face& f : mesh.faces) {
-    site.part_of_face.push_back(none);
-    if (!f.live) continue;
-    std::uint32_t& part = part_of_root[sets.find(f.point[0])];
-    if (part == none) {
-      part = static_cast<std::uint32_t>(site.boxes.size());
-      site.boxes.emplace_back();
-    }
-    site.part_of_face.back() = part;
-    for (const std::uint32_t p : f.point) site.boxes[part].add(mesh.at(p));
+  site.boxes.resize(split_by_points(mesh, site.part_of_face));
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+    if (site.part_of_face[f] == none) continue;
+    for (const std::uint32_t p : mesh.faces[f].point) site.boxes[site.part_of_face[f]].add(mesh.at(p));
   }
   return site;
 }

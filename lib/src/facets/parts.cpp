@@ -27,28 +27,32 @@ PartFinder::PartFinder(const FacetMesh& mesh)
   split();
 }
 
-// Faces that hang together by points.
-void PartFinder::split() {
-  if (edits_ == mesh_.edits) return;
-  edits_ = mesh_.edits;
-  DisjointSets sets{mesh_.point_count()};
-  for (const Face& f : mesh_.faces) {
+std::uint32_t split_by_points(const FacetMesh& mesh, std::vector<std::uint32_t>& part_of_face) {
+  DisjointSets sets{mesh.point_count()};
+  for (const Face& f : mesh.faces) {
     if (!f.live) continue;
     sets.join(f.point[0], f.point[1]);
     sets.join(f.point[0], f.point[2]);
   }
-  std::vector<std::uint32_t> part_of_root(mesh_.point_count(), none);
+  std::vector<std::uint32_t> part_of_root(mesh.point_count(), none);
+  part_of_face.assign(mesh.faces.size(), none);
+  std::uint32_t count = 0;
+  for (FaceId f = 0; f < mesh.faces.size(); ++f) {
+    if (!mesh.faces[f].live) continue;
+    std::uint32_t& part = part_of_root[sets.find(mesh.faces[f].point[0])];
+    if (part == none) part = count++;
+    part_of_face[f] = part;
+  }
+  return count;
+}
+
+void PartFinder::split() {
+  if (edits_ == mesh_.edits) return;
+  edits_ = mesh_.edits;
   parts_.clear();
-  for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
-    part_of_[f] = none;
-    if (!mesh_.faces[f].live) continue;
-    std::uint32_t& part = part_of_root[sets.find(mesh_.faces[f].point[0])];
-    if (part == none) {
-      part = static_cast<std::uint32_t>(parts_.size());
-      parts_.emplace_back();
-    }
-    part_of_[f] = part;
-    parts_[part].push_back(f);
+  parts_.resize(split_by_points(mesh_, part_of_));
+  for (FaceId f = 0; f < part_of_.size(); ++f) {
+    if (part_of_[f] != none) parts_[part_of_[f]].push_back(f);
   }
 }
 

@@ -18,6 +18,10 @@ struct Part {
   double cost = 0.0;                   // integral of squared distance
 };
 
+// Live faces that hang together by points: sets the part of every face, none of the dead ones, numbered by their first
+// face. Returns how many there are.
+std::uint32_t split_by_points(const FacetMesh& mesh, std::vector<std::uint32_t>& part_of_face);
+
 // Finds the parts that may go. Remembers what each cost at least when it was looked at last, so that most are not
 // measured again before the price is near.
 class PartFinder {
