@@ -6,6 +6,7 @@
 
 #include <GL/osmesa.h>
 #include <dlfcn.h>
+#include <malloc.h>
 
 #include <array>
 
@@ -77,6 +78,16 @@ OsmesaContext::~OsmesaContext() {
 void* OsmesaContext::address(const char* name) {
   const auto find = osmesa().address;
   return find == nullptr ? nullptr : reinterpret_cast<void*>(find(name));
+}
+
+// Of OpenGL 4.1, or ARB_ES2_compatibility; OSMesa has no address for what it lacks.
+void OsmesaContext::release_compiler() {
+  const auto release = reinterpret_cast<PFNGLRELEASESHADERCOMPILERPROC>(address("glReleaseShaderCompiler"));
+  if (release == nullptr) return;
+  release();
+#ifdef __GLIBC__
+  ::malloc_trim(0);  // to the system: what comes next may not fit into the gaps
+#endif
 }
 
 }  // namespace lodestone::render

@@ -17,6 +17,9 @@ class OsmesaContext {
   ~OsmesaContext();
 
   [[nodiscard]] static void* address(const char* name);
+  /// Lets go of what the shader compiler keeps, 6 MB: once those programs are made that every picture needs. It comes
+  /// back with the next one.
+  static void release_compiler();
 
  private:
   OsmesaContext() = default;

@@ -18,6 +18,7 @@ Result<std::unique_ptr<Stage>> Stage::create() {
   if (!renderer) return renderer.error();
   auto presenter = Presenter::create(*table);
   if (!presenter) return presenter.error();
+  OsmesaContext::release_compiler();
   return std::unique_ptr<Stage>{new Stage{std::move(context).value(), std::move(table), std::move(renderer).value(),
                                           std::move(presenter).value()}};
 }

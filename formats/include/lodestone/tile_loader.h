@@ -101,7 +101,8 @@ struct PagerStatus {
   std::vector<std::string> failures;  ///< one line per tile that could not be read; what is coarser stands in for it
 };
 
-/// Belongs to one thread, which calls update() once a frame; workers read files. The root is read on construction.
+/// Belongs to one thread, which calls update() once a frame; workers read files. The root is read on construction, the
+/// rest from the second update() on, or the first wait(): so the first picture has processor and memory for itself.
 class TilePager {
  public:
   explicit TilePager(std::shared_ptr<const TilePyramid> pyramid, const PagerOptions& options = {});

@@ -66,6 +66,7 @@ struct TilePager::State {
   bool ending = false;
   std::vector<std::thread> threads;  // last: they use all of the above
 
+  void start_workers();
   void work();
   void take_in(NodeId tile, Result<Mesh> mesh);
   void collect();
@@ -74,6 +75,10 @@ struct TilePager::State {
   void append_missing(std::vector<NodeId>& wanted);
   void let_go();
 };
+
+void TilePager::State::start_workers() {
+  while (threads.size() < std::max(1U, options.workers)) threads.emplace_back([this] { work(); });
+}
 
 void TilePager::State::work() {
   std::unique_lock lock{mutex};
@@ -156,10 +161,11 @@ void TilePager::State::ask(const View& view, const View& later, double dt_s) {
     if (stages[tile] == Stage::Wanted) stages[tile] = Stage::Absent;
   }
   queue.clear();
-  for (auto at = wanted.rbegin(); at != wanted.rend(); ++at) {  // the first mention is the most urgent
-    if (stages[*at] != Stage::Absent) continue;
-    stages[*at] = Stage::Wanted;
-    queue.push_back(*at);
+  std::reverse(wanted.begin(), wanted.end());
+  for (const NodeId tile : wanted) {  // the first mention is the most urgent
+    if (stages[tile] != Stage::Absent) continue;
+    stages[tile] = Stage::Wanted;
+    queue.push_back(tile);
   }
   std::reverse(queue.begin(), queue.end());
   status.wanted_tiles = static_cast<std::uint32_t>(
@@ -209,7 +215,6 @@ TilePager::TilePager(std::shared_ptr<const TilePyramid> pyramid, const PagerOpti
   }
   const Range roots = graph.groups.empty() ? Range{} : graph.groups.front().nodes;
   for (NodeId n = roots.begin; n < roots.end; ++n) s.take_in(n, s.pyramid->load(n));
-  for (unsigned i = 0; i < std::max(1U, options.workers); ++i) s.threads.emplace_back([&s] { s.work(); });
 }
 
 TilePager::~TilePager() {
@@ -224,7 +229,7 @@ TilePager::~TilePager() {
 std::span<const NodeId> TilePager::update(const View& view, double dt_s) {
   State& s = *state_;
   s.collect();
-  ++s.frame;
+  if (++s.frame > 1) s.start_workers();  // the first picture has processor and memory for itself
   View later = view;
   if (s.frame > 1 && dt_s > 0.0) later.eye += (view.eye - s.last_eye) * (s.options.look_ahead_s / dt_s);
   s.last_eye = view.eye;
@@ -237,6 +242,7 @@ std::span<const NodeId> TilePager::update(const View& view, double dt_s) {
 void TilePager::wait() {
   State& s = *state_;
   if (s.status.wanted_tiles == 0) return;
+  s.start_workers();
   std::unique_lock lock{s.mutex};
   s.done.wait(lock, [&] { return !s.finished.empty(); });
 }

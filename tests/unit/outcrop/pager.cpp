@@ -66,6 +66,21 @@ TEST_CASE("Nearer by, more is drawn; from very near the source itself, from far 
   CHECK(triangles(fine, fine.settle(from_south(**pyramid, 4.0))) == small_cliff().triangle_count());
 }
 
+TEST_CASE("Nothing else is read beside the first picture") {
+  const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
+  REQUIRE(pyramid);
+  TilePager pager{*pyramid};
+  const View near = from_south(**pyramid, 2.0);
+  CHECK(pager.update(near, 0.01).size() == 1);
+  CHECK(pager.status().wanted_tiles > 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds{100});  // in which workers would have read several
+  CHECK(pager.update(near, 0.01).size() == 1);
+  CHECK(pager.status().loaded_tiles == 1);
+  pager.wait();
+  static_cast<void>(pager.update(near, 0.01));
+  CHECK(pager.status().loaded_tiles > 1);
+}
+
 TEST_CASE("While tiles are on their way, and whatever the budget, no part of the view is missing or drawn twice") {
   const auto pyramid = TilePyramid::open(tiles() / "tileset.json");
   REQUIRE(pyramid);
