@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace lodestone::facets {
@@ -43,9 +44,9 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 // The highest face over each cell of the ground.
 class Raster {
  public:
-  // Lower than `ground_ratio` of the height is no building.
-  Raster(const Mesh& mesh, double ground_ratio) {
+  explicit Raster(const Mesh& mesh) {
     const Box box = bounds(mesh);
+    ground_m_ = box.min.z;
     low_ = {box.min.x, box.min.y};
     const double extent = std::max(box.max.x - box.min.x, box.max.y - box.min.y);
     cell_m_ = std::max(extent / raster_cells, 1e-6);
@@ -53,21 +54,61 @@ class Raster {
     ny_ = static_cast<int>((box.max.y - box.min.y) / cell_m_) + 1;
     heights_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), empty_height);
     for (FaceId f = 0; f < mesh.triangle_count(); ++f) draw(mesh, f);
-    forget_ground(box.min.z, ground_ratio);
+  }
+  // Without what is lower than `ground_ratio` of the height: that is no building.
+  [[nodiscard]] Raster above(double ground_ratio) const {
+    Raster raster = *this;
+    raster.forget_ground(ground_ratio);
+    raster.count_full();
+    return raster;
   }
 
-  // Calls visit(place, height) for all cells whose middle lies in the box; height is `empty_height` where nothing is.
+  // Calls visit(place, height) for all cells; height is `empty_height` where nothing is.
   template <class Visit>
-  void visit(const glm::dvec2& from, const glm::dvec2& to, Visit visit) const {
-    const glm::ivec2 first = cell_of(from);
-    const glm::ivec2 last = cell_of(to);
-    for (int y = std::max(first.y, 0); y <= std::min(last.y, ny_ - 1); ++y) {
-      for (int x = std::max(first.x, 0); x <= std::min(last.x, nx_ - 1); ++x) visit(middle(x, y), at(x, y));
+  void visit_all(Visit visit) const {
+    for (int y = 0; y < ny_; ++y) {
+      for (int x = 0; x < nx_; ++x) visit(middle(x, y), at(x, y));
     }
   }
+  // Calls visit(inside, height) for all cells.
   template <class Visit>
-  void visit_all(Visit v) const {
-    visit(low_, middle(nx_, ny_), v);
+  void visit_all(const Footprint& footprint, Visit visit) const {
+    std::vector<double> crossings;
+    for (int y = 0; y < ny_; ++y) {
+      find_crossings(footprint, middle(0, y).y, crossings);
+      std::size_t passed = 0;
+      for (int x = 0; x < nx_; ++x) {
+        while (passed < crossings.size() && crossings[passed] <= middle(x, y).x) ++passed;
+        visit((crossings.size() - passed) % 2 != 0, at(x, y));
+      }
+    }
+  }
+  // Of cells that are not empty, those whose middles lie in the convex polygon, which turns left.
+  [[nodiscard]] int count_in(std::span<const glm::dvec2> polygon) const {
+    double low_y = polygon[0].y;
+    double high_y = low_y;
+    for (const glm::dvec2& p : polygon) {
+      low_y = std::min(low_y, p.y);
+      high_y = std::max(high_y, p.y);
+    }
+    int count = 0;
+    for (int y = std::max(cell_of({low_.x, low_y}).y, 0); y <= std::min(cell_of({low_.x, high_y}).y, ny_ - 1); ++y) {
+      double left = low_.x;
+      double right = middle(nx_, y).x;
+      const double at_y = middle(0, y).y;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec2 a = polygon[i];
+        const glm::dvec2 along = polygon[i + 1 == polygon.size() ? 0 : i + 1] - a;
+        const double x = along.y == 0.0 ? 0.0 : a.x + (at_y - a.y) / along.y * along.x;
+        if (along.y > 0.0) right = std::min(right, x);
+        if (along.y < 0.0) left = std::max(left, x);
+        if (along.y == 0.0 && along.x * (at_y - a.y) < 0.0) right = left - 1.0;
+      }
+      const int first = std::max(static_cast<int>(std::ceil((left - low_.x) / cell_m_ - 0.5)), 0);
+      const int end = std::min(static_cast<int>(std::floor((right - low_.x) / cell_m_ - 0.5)), nx_ - 1) + 1;
+      if (first < end) count += full_before(end, y) - full_before(first, y);
+    }
+    return count;
   }
   [[nodiscard]] double cell_area_m2() const { return cell_m_ * cell_m_; }
 
@@ -80,14 +121,40 @@ class Raster {
     return heights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(x)];
   }
 
+  // Where the outline crosses a row, ascending.
+  static void find_crossings(const Footprint& footprint, double y, std::vector<double>& crossings) {
+    crossings.clear();
+    for (std::size_t loop = 0, first = 0; loop < footprint.loop_ends.size(); first = footprint.loop_ends[loop++]) {
+      for (std::size_t i = first, end = footprint.loop_ends[loop]; i < end; ++i) {
+        const glm::dvec2 a = footprint.corners[i];
+        const glm::dvec2 b = footprint.corners[i + 1 == end ? first : i + 1];
+        if ((a.y > y) != (b.y > y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+      }
+    }
+    std::sort(crossings.begin(), crossings.end());
+  }
+
+  // In its row.
+  [[nodiscard]] int full_before(int x, int y) const {
+    return full_before_[static_cast<std::size_t>(y) * static_cast<std::size_t>(nx_ + 1) + static_cast<std::size_t>(x)];
+  }
+  void count_full() {
+    full_before_.clear();
+    for (int y = 0; y < ny_; ++y) {
+      int count = 0;
+      full_before_.push_back(count);
+      for (int x = 0; x < nx_; ++x) full_before_.push_back(count += at(x, y) > empty_height ? 1 : 0);
+    }
+  }
+
   // The ground around a building may come with it, as a slab or a terrace.
-  void forget_ground(double low_m, double ground_ratio) {
+  void forget_ground(double ground_ratio) {
     std::vector<double> full;
     std::copy_if(heights_.begin(), heights_.end(), std::back_inserter(full), [](double h) { return h > empty_height; });
     if (full.empty()) return;
     const auto high = full.begin() + static_cast<std::ptrdiff_t>(high_share * static_cast<double>(full.size() - 1));
     std::nth_element(full.begin(), high, full.end());
-    const double ground_m = low_m + ground_ratio * (*high - low_m);
+    const double ground_m = ground_m_ + ground_ratio * (*high - ground_m_);
     for (double& h : heights_) h = h < ground_m ? empty_height : h;
   }
 
@@ -116,8 +183,10 @@ class Raster {
 
   glm::dvec2 low_{0.0};
   double cell_m_ = 1.0;
+  double ground_m_ = 0.0;
   int nx_ = 0, ny_ = 0;
   std::vector<double> heights_;
+  std::vector<int> full_before_;  // cells of the row that are not empty, per cell and one past the end
 };
 
 // Walls that lie in one line are one; heaviest first. Empty if too little of the area is wall.
@@ -231,25 +300,14 @@ class Cells {
  private:
   // At least half of its area, of which much may lie beyond the raster.
   [[nodiscard]] bool covered(const std::vector<std::uint32_t>& cell, const Raster& raster) const {
-    glm::dvec2 low = points_[cell[0]];
-    glm::dvec2 high = low;
+    std::vector<glm::dvec2> polygon;
     double twice_area_m2 = 0.0;
     for (std::size_t i = 0; i < cell.size(); ++i) {
       const glm::dvec2& p = points_[cell[i]];
-      low = glm::min(low, p);
-      high = glm::max(high, p);
+      polygon.push_back(p);
       twice_area_m2 += cross(p - points_[cell[0]], points_[cell[(i + 1) % cell.size()]] - points_[cell[0]]);
     }
-    int full = 0;
-    raster.visit(low, high, [&](const glm::dvec2& p, double height) {
-      if (height == Raster::empty_height) return;
-      for (std::size_t i = 0; i < cell.size(); ++i) {
-        const glm::dvec2 a = points_[cell[i]];
-        if (cross(points_[cell[(i + 1) % cell.size()]] - a, p - a) < 0.0) return;
-      }
-      ++full;
-    });
-    return full * raster.cell_area_m2() > 0.25 * twice_area_m2;
+    return raster.count_in(polygon) * raster.cell_area_m2() > 0.25 * twice_area_m2;
   }
 
   std::vector<glm::dvec2> points_;
@@ -277,39 +335,31 @@ void straighten(std::vector<glm::dvec2>& loop) {
 }
 
 // How far what is covered reaches along a direction.
-std::pair<double, double> reach_m(const Raster& raster, const glm::dvec2& along) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
+struct Reach {
+  glm::dvec2 along{0.0};
+  double low_m = std::numeric_limits<double>::infinity();
+  double high_m = -std::numeric_limits<double>::infinity();
+};
+
+Reach find_reach(const Raster& raster, const glm::dvec2& along) {
+  Reach reach{along};
   raster.visit_all([&](const glm::dvec2& p, double height) {
     if (height == Raster::empty_height) return;
-    low = std::min(low, glm::dot(along, p));
-    high = std::max(high, glm::dot(along, p));
+    reach.low_m = std::min(reach.low_m, glm::dot(along, p));
+    reach.high_m = std::max(reach.high_m, glm::dot(along, p));
   });
-  return {low, high};
+  return reach;
 }
 
 // Where the outermost wall line of a direction lies far inside of what is covered, there is a wall missing.
-void add_missing_walls(const Raster& raster, const glm::dvec2& along, std::vector<Line>& lines) {
-  const auto [low, high] = reach_m(raster, along);
-  for (const double end : {low, high}) {
+void add_missing_walls(const Reach& reach, std::vector<Line>& lines) {
+  for (const double end : {reach.low_m, reach.high_m}) {
     const bool there = std::any_of(lines.begin(), lines.end(), [&](const Line& line) {
-      const double cosine = glm::dot(line.normal, along);
+      const double cosine = glm::dot(line.normal, reach.along);
       return std::abs(cosine) > same_line_cosine && std::abs(line.offset_m * cosine - end) < eaves_m;
     });
-    if (!there) lines.push_back({along, end, 0.0});
+    if (!there) lines.push_back({reach.along, end, 0.0});
   }
-}
-
-bool contains(const Footprint& footprint, const glm::dvec2& p) {
-  bool inside = false;
-  for (std::size_t loop = 0, first = 0; loop < footprint.loop_ends.size(); first = footprint.loop_ends[loop++]) {
-    for (std::size_t i = first, end = footprint.loop_ends[loop]; i < end; ++i) {
-      const glm::dvec2 a = footprint.corners[i];
-      const glm::dvec2 b = footprint.corners[i + 1 == end ? first : i + 1];
-      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
-    }
-  }
-  return inside;
 }
 
 // The largest loop and the holes in it; false if much lies elsewhere.
@@ -337,9 +387,8 @@ double agreement(const Raster& raster, Footprint& footprint) {
   double both = 0.0;
   double any = 0.0;
   std::vector<double> heights;
-  raster.visit_all([&](const glm::dvec2& p, double height) {
+  raster.visit_all(footprint, [&](bool inside, double height) {
     const bool full = height > Raster::empty_height;
-    const bool inside = contains(footprint, p);
     both += full && inside ? 1.0 : 0.0;
     any += full || inside ? 1.0 : 0.0;
     if (full && inside) heights.push_back(height);
@@ -358,8 +407,8 @@ namespace {
 // What either has and the other has not.
 double difference_m3(const Raster& raster, const Footprint& footprint) {
   double sum = 0.0;
-  raster.visit_all([&](const glm::dvec2& p, double height) {
-    const double block_m = contains(footprint, p) ? footprint.high_m : footprint.low_m;
+  raster.visit_all(footprint, [&](bool inside, double height) {
+    const double block_m = inside ? footprint.high_m : footprint.low_m;
     sum += std::abs(std::max(height, footprint.low_m) - block_m) * raster.cell_area_m2();
   });
   return sum;
@@ -369,14 +418,16 @@ Footprint find_on(const Raster& raster, const std::vector<Line>& lines, std::uin
   Footprint footprint;
   const glm::dvec2 along = lines.front().normal;
   const glm::dvec2 across{-along.y, along.x};
-  const auto [low_a, high_a] = reach_m(raster, along);
-  const auto [low_b, high_b] = reach_m(raster, across);
-  if (!(low_a < high_a) || !(low_b < high_b)) {
+  const Reach reach_a = find_reach(raster, along);
+  const Reach reach_b = find_reach(raster, across);
+  if (!(reach_a.low_m < reach_a.high_m) || !(reach_b.low_m < reach_b.high_m)) {
     footprint.sentence = "nothing lies over the ground between the walls";
     return footprint;
   }
-  const std::array<double, 4> a{low_a - margin_m, high_a + margin_m, high_a + margin_m, low_a - margin_m};
-  const std::array<double, 4> b{low_b - margin_m, low_b - margin_m, high_b + margin_m, high_b + margin_m};
+  const std::array<double, 4> a{reach_a.low_m - margin_m, reach_a.high_m + margin_m, reach_a.high_m + margin_m,
+                                reach_a.low_m - margin_m};
+  const std::array<double, 4> b{reach_b.low_m - margin_m, reach_b.low_m - margin_m, reach_b.high_m + margin_m,
+                                reach_b.high_m + margin_m};
   std::array<glm::dvec2, 4> rectangle{};
   for (std::size_t i = 0; i < 4; ++i) rectangle[i] = a[i] * along + b[i] * across;
   double best = -std::numeric_limits<double>::infinity();
@@ -384,8 +435,8 @@ Footprint find_on(const Raster& raster, const std::vector<Line>& lines, std::uin
   for (std::size_t most_lines : {16U, 12U, 8U, 6U, 4U, 0U}) {
     std::vector<Line> used{lines.begin(),
                            lines.begin() + static_cast<std::ptrdiff_t>(std::min(most_lines, lines.size()))};
-    add_missing_walls(raster, along, used);
-    add_missing_walls(raster, across, used);
+    add_missing_walls(reach_a, used);
+    add_missing_walls(reach_b, used);
     Cells cells{rectangle};
     for (const Line& line : used) cells.cut(line);
     Footprint found;
@@ -411,9 +462,10 @@ Footprint find_footprint(const Mesh& mesh, const CharacteristicSurfaces& surface
     nothing.sentence = "there are no walls to stand a block on";
     return nothing;
   }
-  const Raster raster{mesh, lowest_ratio};
+  const Raster all{mesh};
+  const Raster raster = all.above(lowest_ratio);
   Footprint whole = find_on(raster, lines, most_corners);
-  Footprint body = find_on(Raster{mesh, annex_ratio}, lines, most_corners);
+  Footprint body = find_on(all.above(annex_ratio), lines, most_corners);
   whole.low_m = body.low_m = bounds(mesh).min.z;
   if (!whole.sentence.empty() || !body.sentence.empty()) return whole;
   const bool better = difference_m3(raster, body) < (1.0 - least_gain) * difference_m3(raster, whole);

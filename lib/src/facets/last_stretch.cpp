@@ -15,8 +15,9 @@ namespace lodestone::facets {
 namespace {
 
 constexpr double first_error_m = 0.02;
-constexpr double error_step = 1.3;
 constexpr std::size_t few_faces = 1'000;
+constexpr double error_step = 1.3;      // from one stage to the next; each looks at all edges,
+constexpr double coarse_step = 2.0;     // so where more faces are left there are fewer stages
 constexpr double strict_quota = 0.005;  // of the points in a pass: near to strict order, which few can afford
 constexpr double plane_arm_m = 9.0;     // that of the loop's own slides
 constexpr double claim_factor = 2.0;    // the engine's claims times this, added to what was claimed before
@@ -59,7 +60,8 @@ class Rest final : public collapse::Sink {
     const double most_m = (options.max_error_m - error_m_) / claim_factor;
     const double last_m = std::min(most_m, bounds(rest_).diagonal_m());
     const std::uint32_t target = std::max(options.target_triangles, block_.face_count());
-    for (double limit_m = first_error_m; limit_m < last_m && !context.cancelled(); limit_m *= error_step) {
+    double limit_m = first_error_m;
+    while (limit_m < last_m && !context.cancelled()) {
       if (stopped_ || mesh_.live_faces <= target) break;
       drop_dead_faces();
       EdgeCollapseOptions stage = hold_planes(limit_m * limit_m);
@@ -69,6 +71,7 @@ class Rest final : public collapse::Sink {
                     {.deviation_m = strayed_m_,
                      .quota = face_.size() < few_faces ? strict_quota : 0.0,
                      .scruples = collapse::Scruples::None});
+      limit_m *= face_.size() < few_faces ? error_step : coarse_step;
     }
     hand_back();
     return record_count_;

@@ -297,7 +297,9 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
       if (!std::all_of(face.point.begin(), face.point.end(), stands_in)) continue;
       // The wall itself may run around a bend of the outline.
       const glm::dvec3 center = (mesh_.at(face.point[0]) + mesh_.at(face.point[1]) + mesh_.at(face.point[2])) / 3.0;
-      if (shape.contains(center, 0.0) || !lies_in(mesh_, face, plane.normal, plane.offset_m)) content.push_back(f);
+      if (!shape.contains(center, 0.0) && lies_in(mesh_, face, plane.normal, plane.offset_m)) continue;
+      content.push_back(f);
+      stood_in_[f] = look_;
     }
   });
   std::sort(content.begin(), content.end());
@@ -323,7 +325,7 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
       const std::uint32_t b0 = face.point[k == 2 ? 0 : k + 1];
       if (is_edge_of(opening, a0, b0)) continue;
       for (const FaceId other : mesh_.faces_of[a0]) {
-        if (!has_point(mesh_.faces[other], b0) || contains(content, other)) continue;
+        if (stood_in_[other] == look_ || !has_point(mesh_.faces[other], b0)) continue;
         if (closed_ || !is_behind(mesh_, mesh_.faces[other], plane)) return std::nullopt;
       }
     }
@@ -496,6 +498,7 @@ Openings::Openings(const FacetMesh& mesh, bool closed)
       walls_(mesh),
       cells_(mesh),
       looked_at_(mesh.faces.size(), 0),
+      stood_in_(mesh.faces.size(), 0),
       asked_(mesh.point_count()) {}
 
 void Openings::update() { cells_.update(walls_.update()); }

@@ -64,6 +64,7 @@ class Openings {
   PointCells cells_;
   std::map<std::vector<std::uint32_t>, Known> known_;  // by outline
   std::vector<std::uint32_t> looked_at_;               // per face
+  std::vector<std::uint32_t> stood_in_;                // per face: the last opening looked at that it stood in
   struct Asked {
     std::uint32_t look = 0;
     bool stands_in = false;

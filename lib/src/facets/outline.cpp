@@ -34,10 +34,15 @@ bool is_sliver(const FacetMesh& mesh, const Face& face) {
   return longest2 == 0.0 || glm::dot(across, across) < sliver_m * sliver_m * longest2;
 }
 
-bool lies_in(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m) {
-  return (glm::dot(face.normal, normal) > parallel_cosine || is_sliver(mesh, face)) &&
-         std::all_of(face.point.begin(), face.point.end(),
+bool is_parallel(const Face& face, const glm::dvec3& normal) { return glm::dot(face.normal, normal) > parallel_cosine; }
+
+bool is_near(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m) {
+  return std::all_of(face.point.begin(), face.point.end(),
                      [&](std::uint32_t p) { return std::abs(glm::dot(normal, mesh.at(p)) - offset_m) < plane_m; });
+}
+
+bool lies_in(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m) {
+  return (is_parallel(face, normal) || is_sliver(mesh, face)) && is_near(mesh, face, normal, offset_m);
 }
 
 std::vector<Edge> outline(const FacetMesh& mesh, const std::vector<FaceId>& faces) {

@@ -17,7 +17,10 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;  // between points, the fa
 // So flat that it has no direction: drawn to tie a side to the points it passes by.
 [[nodiscard]] bool is_sliver(const FacetMesh& mesh, const Face& face);
 
-// Slivers lie in any plane of their points.
+[[nodiscard]] bool is_parallel(const Face& face, const glm::dvec3& normal);
+// All of its points.
+[[nodiscard]] bool is_near(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m);
+// Both; but slivers lie in any plane of their points.
 [[nodiscard]] bool lies_in(const FacetMesh& mesh, const Face& face, const glm::dvec3& normal, double offset_m);
 
 // The edges of the faces that have none of them on the other side, ascending.

@@ -100,7 +100,7 @@ void Surroundings::visit(const Grove& grove, const glm::dvec3& p, std::uint32_t 
       if (slot.face == none) continue;
       // All of a bundle hung together when the tree was built; they may not any more.
       if ((*part_of_)[slot.face] == part) continue;
-      if (!visit_slot(slot)) return false;
+      if (!visit_slot(slot, bundle.count == 1)) return false;
     }
     return true;
   });
@@ -123,10 +123,10 @@ Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t p
   for (const Grove* grove : {&old_, &young_}) {
     visit(
         *grove, p, part, [&] { return least; },
-        [&](const Slot& slot) {
+        [&](const Slot& slot, bool alone) {
           const auto& [a, b, c] = slot.corner;
-          const FloatBox box{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
-          if (box.squared_distance(p) < least) consider(slot.face, a, b, c);
+          const auto box = [&] { return FloatBox{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}; };
+          if (alone || box().squared_distance(p) < least) consider(slot.face, a, b, c);
           return true;
         });
   }
@@ -140,7 +140,7 @@ bool Surroundings::lies_behind(const glm::dvec3& p, const glm::dvec3& across, st
   for (const Grove* grove : {&old_, &young_}) {
     visit(
         *grove, p, part, [&] { return bound; },
-        [&](const Slot& slot) {
+        [&](const Slot& slot, bool) {
           const Face& face = mesh_.faces[slot.face];
           if (!(std::abs(glm::dot(face.normal, across)) > 0.7)) return true;
           const glm::dvec3 a{slot.corner[0]};

@@ -47,8 +47,8 @@ class Surroundings {
     std::vector<Bundle> bundles;
     TriangleBvh tree{{}, {}};  // of the boxes
   };
-  // Calls visit(slot) for faces of other parts in bundles nearer than bound(), the squared distance, until it returns
-  // false.
+  // Calls visit(slot, alone) for faces of other parts in bundles nearer than bound(), the squared distance, until it
+  // returns false; `alone`: the bundle has no other.
   template <class Bound, class Visit>
   void visit(const Grove& grove, const glm::dvec3& p, std::uint32_t part, Bound bound, Visit visit_slot) const;
   void add_bundle(Grove& grove, std::span<const FaceId> faces) const;

@@ -15,7 +15,8 @@ constexpr std::size_t fewest_faces = 6;   // of a wall with an opening
 
 }  // namespace
 
-Walls::Walls(const FacetMesh& mesh) : mesh_(mesh), wall_of_(mesh.faces.size(), none), state_(mesh.faces.size(), 0) {}
+Walls::Walls(const FacetMesh& mesh)
+    : mesh_(mesh), wall_of_(mesh.faces.size(), none), state_(mesh.faces.size(), 0), is_sliver_(mesh.faces.size(), 0) {}
 
 // Faces on one edge; asked of the lower one that has a direction, so that both give the same answer. Slivers, drawn to
 // tie a side to the points it passes by, join what they lie between: without them the pier between two windows would
@@ -23,10 +24,11 @@ Walls::Walls(const FacetMesh& mesh) : mesh_(mesh), wall_of_(mesh.faces.size(), n
 bool Walls::joined(FaceId f, FaceId g) const {
   if (mesh_.source->face_material(f) != mesh_.source->face_material(g)) return false;
   if (g < f) std::swap(f, g);
-  if (is_sliver(mesh_, mesh_.faces[f])) std::swap(f, g);
+  if (is_sliver_[f] != 0) std::swap(f, g);
   const Face& face = mesh_.faces[f];
-  if (is_sliver(mesh_, face)) return true;
-  return lies_in(mesh_, mesh_.faces[g], face.normal, glm::dot(face.normal, mesh_.at(face.point[0])));
+  if (is_sliver_[f] != 0) return true;
+  if (is_sliver_[g] == 0 && !is_parallel(mesh_.faces[g], face.normal)) return false;
+  return is_near(mesh_, mesh_.faces[g], face.normal, glm::dot(face.normal, mesh_.at(face.point[0])));
 }
 
 void Walls::dissolve(std::uint32_t wall, std::vector<FaceId>& loose) {
@@ -69,7 +71,7 @@ void Walls::find_openings(Wall& wall) const {
   double largest = 0.0;
   for (const FaceId f : wall.faces) {
     const double area = glm::length(mesh_.area_vector(mesh_.faces[f]));
-    if (area <= largest || is_sliver(mesh_, mesh_.faces[f])) continue;
+    if (area <= largest || is_sliver_[f] != 0) continue;
     largest = area;
     plain = f;
   }
@@ -103,6 +105,7 @@ const std::vector<FaceId>& Walls::update() {
     const std::uint64_t state = mesh_.faces[f].live ? mesh_.state_of(f) : 0;
     if (state == state_[f]) continue;
     state_[f] = state;
+    is_sliver_[f] = state != 0 && is_sliver(mesh_, mesh_.faces[f]) ? 1 : 0;
     changed_.push_back(f);
   }
   std::vector<FaceId> loose;

@@ -40,9 +40,10 @@ class Walls {
   void find_openings(Wall& wall) const;
 
   const FacetMesh& mesh_;
-  std::vector<Wall> walls_;             // dissolved ones are empty
-  std::vector<std::uint32_t> wall_of_;  // per face
-  std::vector<std::uint64_t> state_;    // per face at the last update, 0 if dead
+  std::vector<Wall> walls_;              // dissolved ones are empty
+  std::vector<std::uint32_t> wall_of_;   // per face
+  std::vector<std::uint64_t> state_;     // per face at the last update, 0 if dead
+  std::vector<std::uint8_t> is_sliver_;  // the same
   std::vector<FaceId> changed_;
   std::optional<std::uint64_t> edits_;  // there had been at the last update
 };

@@ -141,7 +141,11 @@ class TriangleBvh {
   // Leaves out nodes for which skips(node).
   template <class Bound, class Visit, class Skips>
   void descend(const glm::dvec3& p, Bound bound, Visit visit, Skips skips) const {
-    std::array<std::pair<double, std::uint32_t>, most_depth + 1> stack;
+    struct Waiting {  // no pair: that would fill the whole stack with zeros for every query
+      double distance;
+      std::uint32_t index;
+    };
+    std::array<Waiting, most_depth + 1> stack;
     std::size_t top = 0;
     stack[top++] = {nodes_[0].squared_distance(p), 0};
     while (top > 0) {
@@ -152,11 +156,11 @@ class TriangleBvh {
         if (!visit(node.first + i)) return;
       }
       if (node.count > 0) continue;
-      std::pair near{nodes_[index + 1].squared_distance(p), index + 1};
-      std::pair far{nodes_[node.first].squared_distance(p), node.first};
-      if (far.first < near.first) std::swap(near, far);
-      if (far.first < bound() && !skips(far.second)) stack[top++] = far;
-      if (near.first < bound() && !skips(near.second)) stack[top++] = near;
+      Waiting near{nodes_[index + 1].squared_distance(p), index + 1};
+      Waiting far{nodes_[node.first].squared_distance(p), node.first};
+      if (far.distance < near.distance) std::swap(near, far);
+      if (far.distance < bound() && !skips(far.index)) stack[top++] = far;
+      if (near.distance < bound() && !skips(near.index)) stack[top++] = near;
     }
   }
 
