@@ -121,6 +121,9 @@ int to_exit_code(ErrorCode code) noexcept {
 
 Error or_resume(const Error& error, const std::filesystem::path& folder) {
   if (error.code != ErrorCode::Cancelled) return error;
+  std::error_code fault;
+  const bool begun = std::filesystem::exists(folder, fault) && !std::filesystem::is_empty(folder, fault);
+  if (!begun) return {ErrorCode::Cancelled, "cancelled before anything was written", folder.string()};
   return {ErrorCode::Cancelled, "cancelled, the same command with --resume goes on from here", folder.string()};
 }
 

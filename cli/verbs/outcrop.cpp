@@ -78,6 +78,7 @@ void Outcrop::describe(Session& session, const TilesetReport& written) {
   report.set("segments", static_cast<std::uint32_t>(written.segments.size()));
   report.set("segments_split_in_space", in_space);
   report.set("kept_tiles", written.kept_tiles);
+  report.set("degenerate_triangles", written.degenerate_triangles);
   report.set("geometry_seconds", written.geometry_seconds);
   report.set("decode_seconds", written.decode_seconds);
   report.set("resample_seconds", written.resample_seconds);
@@ -117,12 +118,11 @@ std::uint64_t bytes_below(const std::filesystem::path& folder) {
   return bytes;
 }
 
-// Of what is wrong with the mesh itself the writer knows a triangle, but no file.
-Error in_file(Error error, const std::filesystem::path& file) {
+// Of what is wrong inside the mesh's file the writer knows a triangle, or the name of an image, but no file.
+std::string in_file(const std::string& where, const std::filesystem::path& file) {
   std::error_code fault;
-  if (error.code != ErrorCode::BadData || std::filesystem::exists(error.where, fault)) return error;
-  error.where = file.string() + (error.where.empty() ? "" : ", " + error.where);
-  return error;
+  if (std::filesystem::exists(where, fault)) return where;
+  return file.string() + (where.empty() ? "" : ", " + where);
 }
 
 Status Outcrop::run(Session& session) {
@@ -134,8 +134,13 @@ Status Outcrop::run(Session& session) {
   auto loaded = input_.read(session, LoadTextures::Reference);
   if (!loaded) return loaded.error();
   auto written = write_outcrop(std::move(loaded->mesh), tiles, options(), session.context());
+  for (Warning& warning : written.warnings()) warning.where = in_file(warning.where, input_.file());
   session.keep(written);
-  if (!written) return or_resume(in_file(written.error(), input_.file()), output_);
+  if (!written) {
+    Error error = written.error();
+    if (error.code == ErrorCode::BadData) error.where = in_file(error.where, input_.file());
+    return or_resume(error, output_);
+  }
   const auto check = check_tileset(tiles / "tileset.json", session.context());
   if (!check) return check.error();
   std::vector<Warning> faults;

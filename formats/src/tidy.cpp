@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lodestone/repair.h>
+
 namespace lodestone {
 namespace {
 
@@ -88,22 +90,37 @@ void tidy_normals(Mesh& mesh) {
   if (any_missing) fill_normals(mesh, missing);
 }
 
+// A face with a corner that has no place in its image would be a smear of it.
+void plain_faces_without_uv(Mesh& mesh, Warnings& warnings) {
+  std::vector<bool> bad(mesh.vertices.uvs.size(), false);
+  bool any = false;
+  for (std::size_t v = 0; v < bad.size(); ++v) {
+    glm::vec2& uv = mesh.vertices.uvs[v];
+    if (std::isfinite(uv.x) && std::isfinite(uv.y)) continue;
+    uv = glm::vec2{0.0F};
+    bad[v] = any = true;
+    warnings.add("a texture coordinate is not a finite number, its faces stay plain");
+  }
+  if (!any) return;
+  std::vector<bool> faces(mesh.triangle_count());
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    faces[f] = bad[mesh.indices[3 * f]] || bad[mesh.indices[3 * f + 1]] || bad[mesh.indices[3 * f + 2]];
+  }
+  leave_plain(mesh, faces);
+}
+
 }  // namespace
 
 void tidy(Mesh& mesh, Warnings& warnings) {
   drop_bad_indices(mesh, warnings);
   drop_bad_positions(mesh, warnings);
-  for (auto& uv : mesh.vertices.uvs) {
-    if (std::isfinite(uv.x) && std::isfinite(uv.y)) continue;
-    uv = glm::vec2{0.0F};
-    warnings.add("a texture coordinate that is not a finite number was set to 0");
-  }
   tidy_normals(mesh);
   if (mesh.materials.empty()) {
     Material material;
     material.name = "default";
     mesh.materials.push_back(std::move(material));
   }
+  plain_faces_without_uv(mesh, warnings);
 }
 
 }  // namespace lodestone

@@ -624,6 +624,20 @@ class Interruption(Contract):
                 self.assertEqual(list(self.scratch.iterdir()), [], words)
 
 
+    def test_ctrl_c_before_the_first_tile_promises_nothing(self):
+        rock = self.scratch / "rock.ply"
+        self.json("generate", "outcrop", "--triangles", 200000, "--texture-size", 64, "-o", rock)
+        folder = self.scratch / "tiles"
+        with subprocess.Popen([PROGRAM, "outcrop", str(rock), "-o", str(folder), "--quiet", "--threads", "1"],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            while process.poll() is None and not folder.is_dir():
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            said = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 4, said)
+        self.assertRegex(said, r"\Alodestone: [^\n]*tiles: cancelled before anything was written\n\Z")
+        self.assertFalse(folder.exists())
+
     def test_ctrl_c_of_a_pyramid_says_how_to_go_on(self):
         heights = self.scratch / "heights.asc"
         side = 700

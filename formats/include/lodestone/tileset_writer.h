@@ -51,14 +51,16 @@ struct TilesetOptions {
   TileCompression compression = TileCompression::None;
   TilesVersion version = TilesVersion::V11;
   /// Goes on with a build of the same input and options that was stopped at any point; tiles that are there are kept.
-  /// The folder comes out the same, byte for byte.
+  /// The folder comes out the same, byte for byte. Where a photograph has changed since, a damaged one that was mended
+  /// or another of the same name, all tiles are made anew, with a warning that names it.
   bool resume = false;
 };
 
 struct TilesetReport {
   std::uint32_t tiles = 0;
   std::uint32_t source_triangles = 0;
-  std::uint64_t bytes = 0;  ///< of all files
+  std::uint32_t degenerate_triangles = 0;  ///< of them without area: in the finest level only
+  std::uint64_t bytes = 0;                 ///< of all files
   double root_error_m = 0.0;
   std::uint32_t kept_tiles = 0;  ///< that were there already (resume)
   std::vector<OutcropLevel> levels;
@@ -75,9 +77,11 @@ struct TilesetReport {
 /// is in memory at a time; `Context::max_memory_bytes` limits how many workers may hold one, and is exceeded, with a
 /// warning, where the triangles alone need more (OutcropPyramid::build). With `crs` known the root
 /// transform places the outcrop on the globe, else it carries the origin. The same bytes come out for any number of
-/// workers. Errors: those of OutcropPyramid::build; BadData for a texture that cannot be decoded, by name; Unreadable
-/// for a full disk; BadArgument where `resume` meets a folder made from something else. A call that fails or is
-/// cancelled leaves no half-written file and no tileset.json, and can be resumed.
+/// workers. A photograph that is missing, empty, cut off or damaged is not used, nor any part of it: its faces stay
+/// plain, with a warning that names it. Errors: those of OutcropPyramid::build; Unreadable for a full disk, or a
+/// photograph that is taken away meanwhile; BadArgument where `resume` meets a folder made from another mesh, with
+/// other options or by another version. A call that fails or is cancelled leaves no half-written file and no
+/// tileset.json, and can be resumed.
 [[nodiscard]] Result<TilesetReport> write_outcrop(Mesh mesh, const std::filesystem::path& folder,
                                                   const TilesetOptions& options = {}, const Context& context = {});
 

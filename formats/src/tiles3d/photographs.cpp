@@ -12,8 +12,6 @@ namespace {
 constexpr std::uint64_t most_file_bytes = 1ULL << 31;
 constexpr std::size_t head_bytes = 1U << 18;  // where a header is looked for first
 
-std::string name_of(const Texture& texture) { return texture.path.empty() ? texture.name : texture.path; }
-
 std::uint32_t big_endian(ByteSpan bytes, std::size_t at) {
   return std::uint32_t{bytes[at]} << 24U | std::uint32_t{bytes[at + 1]} << 16U | std::uint32_t{bytes[at + 2]} << 8U |
          bytes[at + 3];
@@ -61,11 +59,16 @@ Result<TextureInfo> measure(const Texture& texture) {
 
 }  // namespace
 
+std::string name_of(const Texture& texture) { return texture.path.empty() ? texture.name : texture.path; }
+
+Warning plain_warning(const std::string& reason, const std::string& name) {
+  return {"a texture cannot be used, its faces stay plain: " + reason, name};
+}
+
 TextureInfo measure_texture(const Texture& texture, std::vector<Warning>& warnings) {
   auto info = measure(texture);
   if (info && info->width_px > 0 && info->height_px > 0) return *info;
-  const std::string what = info ? "it has no pixels" : info.error().message;
-  warnings.push_back({"a texture cannot be used, its faces stay plain: " + what, name_of(texture)});
+  warnings.push_back(plain_warning(info ? "it has no pixels" : info.error().message, name_of(texture)));
   return {};
 }
 

@@ -12,6 +12,11 @@ namespace lodestone {
 // Size 0 and a warning for a texture that is not there or is no image.
 [[nodiscard]] TextureInfo measure_texture(const Texture& texture, std::vector<Warning>& warnings);
 
+[[nodiscard]] std::string name_of(const Texture& texture);
+
+// "A texture cannot be used, its faces stay plain".
+[[nodiscard]] Warning plain_warning(const std::string& reason, const std::string& name);
+
 // Errors name the texture's file.
 [[nodiscard]] Result<Image> decode_texture(const Texture& texture);
 

@@ -30,7 +30,7 @@ std::uint64_t source_of(const std::filesystem::path& tileset_json, std::span<con
                                 ? tileset_json.string()
                                 : std::filesystem::absolute(tileset_json).lexically_normal().string();
   std::uint64_t hash = XXH64(text.data(), text.size(), XXH64(place.data(), place.size(), 0));
-  const auto build = fetch(tileset_json.parent_path() / "build.json", 1U << 16);
+  const auto build = fetch(tileset_json.parent_path() / "build.json", most_tileset_bytes);
   return build ? XXH64(build->data(), build->size(), hash) : hash;
 }
 

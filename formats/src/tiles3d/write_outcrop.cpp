@@ -3,16 +3,14 @@
 // Differs: every tile is a job of its own, written beside its name and renamed, so a build that was stopped goes on
 // where it was. Photographs are decoded once: all tiles that show only that image are cut from it level by level; what
 // coarser tiles of several images need of it waits in the folder `work` until the end.
-#define XXH_INLINE_ALL  // header only
-#include <xxhash.h>
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "meshes/writers.h"
+#include "tiles3d/build_record.h"
 #include "tiles3d/jobs.h"
 #include "tiles3d/photographs.h"
 #include "tiles3d/tileset_json.h"
@@ -21,8 +19,6 @@ namespace lodestone {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-constexpr int build_version = 3;  // of what tiles look like; raise it when they change
 
 double thread_seconds() {
   timespec now{};
@@ -48,42 +44,14 @@ class Stopwatch {
   double start_ = thread_seconds();
 };
 
-template <class T>
-std::uint64_t hash_of(const std::vector<T>& values, std::uint64_t seed) {
-  return XXH64(values.data(), values.size() * sizeof(T), seed);
-}
-
-// What makes one build differ from another.
-std::string signature(const Mesh& mesh, std::span<const TextureInfo> textures, const TilesetOptions& options) {
-  std::uint64_t hash = hash_of(mesh.vertices.positions, build_version);
-  hash = hash_of(mesh.vertices.uvs, hash);
-  hash = hash_of(mesh.vertices.normals, hash);
-  hash = hash_of(mesh.vertices.colors, hash);
-  hash = hash_of(mesh.indices, hash);
-  hash = hash_of(mesh.face_materials, hash);
-  hash = hash_of(mesh.face_features, hash);
-  std::vector<double> numbers{mesh.origin.x,
-                              mesh.origin.y,
-                              mesh.origin.z,
-                              options.pyramid.ratio,
-                              options.pyramid.texture_ratio,
-                              static_cast<double>(options.pyramid.tile_bytes),
-                              static_cast<double>(options.pyramid.split),
-                              static_cast<double>(options.image),
-                              static_cast<double>(options.jpeg_quality),
-                              static_cast<double>(options.compression),
-                              static_cast<double>(options.version)};
-  for (const Material& m : mesh.materials) {
-    numbers.insert(numbers.end(), {m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a, m.alpha_cutoff,
-                                   static_cast<double>(m.texture)});
+// They are in the finest level, and nowhere else.
+std::uint32_t degenerate_triangles(const Mesh& mesh) {
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) { return glm::dvec3{mesh.vertices.positions[mesh.indices[i + k]]}; };
+    if (glm::cross(corner(1) - corner(0), corner(2) - corner(0)) == glm::dvec3{0.0}) ++count;
   }
-  for (const TextureInfo& info : textures) {
-    numbers.insert(numbers.end(), {static_cast<double>(info.width_px), static_cast<double>(info.height_px),
-                                   static_cast<double>(info.file_bytes)});
-  }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_of(numbers, hash)));
-  return text;
+  return count;
 }
 
 Error cannot_make(const fs::path& folder, const std::error_code& fault) {
@@ -117,13 +85,16 @@ class OutcropWriter {
   Result<TilesetReport> write(Mesh mesh);
 
  private:
-  [[nodiscard]] Status prepare_folder(const std::string& build);
+  [[nodiscard]] Status prepare_folder(const std::string& record);
+  [[nodiscard]] Result<bool> may_keep_tiles(const std::string& found, const std::string& record);
+  [[nodiscard]] Status write_record() const;
   void clean(const fs::path& folder, bool tiles) const;
   void leave_no_trace() const;
   void sort_tiles();
   [[nodiscard]] unsigned photographs_at_once() const;
   [[nodiscard]] std::vector<std::uint32_t> largest_first() const;
   [[nodiscard]] Status write_photograph(std::uint32_t segment, unsigned workers);
+  [[nodiscard]] Result<Image> photograph_of(std::uint32_t texture);
   [[nodiscard]] Status write_joined(std::uint32_t tile);
   [[nodiscard]] Status write_tile(std::uint32_t tile, std::span<const SegmentImages* const> images);
   [[nodiscard]] Status put_texture(TileContent& content, std::span<const SegmentImages* const> images);
@@ -161,6 +132,8 @@ class OutcropWriter {
   std::uint32_t done_ = 0;
   TilesetReport report_;
   std::vector<Warning> warnings_;
+  std::string record_;  // of what the build is made from
+  DamagedPhotographs damaged_;
 };
 
 // Removes what a build of ours left: half-written files, and tiles unless they are to be kept.
@@ -174,29 +147,45 @@ void OutcropWriter::clean(const fs::path& folder, bool tiles) const {
   }
 }
 
-Status OutcropWriter::prepare_folder(const std::string& build) {
-  const fs::path file = folder_ / "build.json";
-  std::error_code fault;
-  const Json wanted{{"format", "lodestone outcrop"}, {"version", build_version}, {"build", build}};
-  const std::string text = wanted.dump() + "\n";
-  std::ifstream stream{file, std::ios::binary};
-  const std::string found{std::istreambuf_iterator<char>{stream}, {}};
-  if (options_.resume && !found.empty() && found != text) {
-    return Error{ErrorCode::BadArgument,
-                 "the folder was made from another input or with other options, "
-                 "leave --resume out to write over it",
-                 folder_.string()};
+// Where only photographs have changed, as those that were mended, the same outcrop is built anew.
+Result<bool> OutcropWriter::may_keep_tiles(const std::string& found, const std::string& record) {
+  if (!options_.resume || found.empty()) return false;
+  const auto changed = changed_photographs(found, record);
+  if (!changed) return Error{changed.error().code, changed.error().message, folder_.string()};
+  if (changed->empty()) {
+    damaged_ = damaged_photographs(found);
+    return true;
   }
+  for (const std::string& name : *changed) {
+    warnings_.push_back({"the photograph is another one since, so all tiles are made anew", name});
+  }
+  return false;
+}
+
+Status OutcropWriter::prepare_folder(const std::string& record) {
+  std::error_code fault;
+  std::ifstream stream{folder_ / "build.json", std::ios::binary};
+  const std::string found{std::istreambuf_iterator<char>{stream}, {}};
+  const auto keep = may_keep_tiles(found, record);
+  if (!keep) return keep.error();
   made_folder_ = !fs::exists(folder_, fault);
   for (const char* name : {"tiles", "work"}) {
     fs::create_directories(folder_ / name, fault);
     if (fault) return cannot_make(folder_ / name, fault);
   }
   clean(folder_, false);
+  if (!*keep) fs::remove_all(folder_ / "work", fault);
+  fs::create_directories(folder_ / "work", fault);
   clean(folder_ / "work", false);
-  clean(folder_ / "tiles", !options_.resume || found.empty());
+  clean(folder_ / "tiles", !*keep);
   fs::remove(folder_ / "tileset.json", fault);
-  return write_whole_file(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  record_ = record;
+  return write_record();
+}
+
+Status OutcropWriter::write_record() const {
+  const std::string text = damaged_.empty() ? record_ : with_damaged(record_, damaged_);
+  return write_whole_file(folder_ / "build.json", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 // Of a build that ended before its first tile.
@@ -351,6 +340,29 @@ bool OutcropWriter::photograph_is_done(std::uint32_t segment) const {
   return true;
 }
 
+// White, as faces without one are, where it is damaged. What was whole when it was measured and is gone now is no
+// damage.
+Result<Image> OutcropWriter::photograph_of(std::uint32_t texture) {
+  const TextureInfo& info = infos_[texture];
+  const Stopwatch watch{mutex_, report_.decode_seconds};
+  auto decoded = decode_texture(textures_[texture]);
+  const std::scoped_lock lock{mutex_};
+  if (decoded && (decoded->width != info.width_px || decoded->height != info.height_px)) {
+    return Error{ErrorCode::BadData, "the image changed its size while it was used", name_of(textures_[texture])};
+  }
+  if (decoded) {
+    report_.decoded_megapixels += 1e-6 * static_cast<double>(decoded->width) * decoded->height;
+    return decoded;
+  }
+  const Error& error = decoded.error();
+  if (error.code == ErrorCode::NotFound || error.code == ErrorCode::Unreadable) return error;
+  damaged_[textures_[texture].name] = error.message;
+  if (Status status = write_record(); !status) return status.error();
+  Image white{info.width_px, info.height_px, 3, {}};
+  white.pixels.assign(std::size_t{white.width} * white.height * white.channels, 255);
+  return white;
+}
+
 Status OutcropWriter::write_photograph(std::uint32_t segment, unsigned workers) {
   if (photograph_is_done(segment)) {
     for (const auto& [level, tiles] : alone_[segment]) {
@@ -358,27 +370,13 @@ Status OutcropWriter::write_photograph(std::uint32_t segment, unsigned workers) 
     }
     return Done{};
   }
-  const std::uint32_t texture = pyramid_->segments()[segment].texture;
-  const TextureInfo& info = infos_[texture];
-  Image photograph;
-  {
-    const Stopwatch watch{mutex_, report_.decode_seconds};
-    auto decoded = decode_texture(textures_[texture]);
-    if (!decoded) return decoded.error();
-    photograph = std::move(*decoded);
-  }
-  if (photograph.width != info.width_px || photograph.height != info.height_px) {
-    return Error{ErrorCode::BadData, "the image changed its size while it was used", textures_[texture].name};
-  }
-  {
-    const std::scoped_lock lock{mutex_};
-    report_.decoded_megapixels += 1e-6 * static_cast<double>(photograph.width) * photograph.height;
-  }
+  auto photograph = photograph_of(pyramid_->segments()[segment].texture);
+  if (!photograph) return photograph.error();
   const auto timed = [&](auto work) {
     const Stopwatch watch{mutex_, report_.resample_seconds};
     return work();
   };
-  SegmentImages images = timed([&] { return SegmentImages{*pyramid_, segment, std::move(photograph)}; });
+  SegmentImages images = timed([&] { return SegmentImages{*pyramid_, segment, std::move(*photograph)}; });
   for (std::uint32_t level = 0; level < pyramid_->levels().size() && !context_.cancelled(); ++level) {
     const auto tiles = alone_[segment].find(level);
     const bool here = tiles != alone_[segment].end();
@@ -467,6 +465,10 @@ void OutcropWriter::warn_of_memory(std::uint32_t vertices) {
 }
 
 Status OutcropWriter::finish() {
+  for (const Texture& texture : textures_) {
+    const auto found = damaged_.find(texture.name);
+    if (found != damaged_.end()) warnings_.push_back(plain_warning(found->second, name_of(texture)));
+  }
   for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
     if (!boxes_[i].empty()) continue;  // else it was kept from an earlier build
     TileContent content = pyramid_->content(i);
@@ -491,10 +493,13 @@ Status OutcropWriter::finish() {
 
 Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   for (const Texture& texture : mesh.textures) infos_.push_back(measure_texture(texture, warnings_));
+  const auto record = record_build(mesh, options_, context_);
+  if (!record) return record.error();
   textures_ = mesh.textures;
   for (Texture& texture : mesh.textures) texture = {.name = texture.name};
   report_.source_triangles = mesh.triangle_count();
-  if (Status status = prepare_folder(signature(mesh, infos_, options_)); !status) return status.error();
+  report_.degenerate_triangles = degenerate_triangles(mesh);
+  if (Status status = prepare_folder(*record); !status) return status.error();
   warn_of_memory(mesh.vertex_count());
   timespec before{};
   timespec after{};
@@ -507,6 +512,7 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   }
   report_.geometry_seconds =
       static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec);
+  warnings_.insert(warnings_.end(), pyramid.warnings().begin(), pyramid.warnings().end());
   pyramid_ = std::move(*pyramid);
   sort_tiles();
   const unsigned at_once = photographs_at_once();

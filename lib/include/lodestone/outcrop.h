@@ -128,8 +128,8 @@ class OutcropPyramid {
  public:
   /// Segments, tiles, simplifies. `textures` has one element per texture of the mesh. Time about 2 us a triangle,
   /// memory about 560 bytes a vertex while building (730 at a ratio of 0.8). The same pyramid comes out for any number
-  /// of workers. Errors: BadData from validate(mesh), a triangle across which its texture repeats more than four times,
-  /// or no triangles; BadArgument; Cancelled.
+  /// of workers. Triangles across which their texture repeats more than four times stay plain, with a warning that
+  /// counts them. Errors: BadData from validate(mesh), or no triangles; BadArgument; Cancelled.
   [[nodiscard]] static Result<std::shared_ptr<const OutcropPyramid>> build(Mesh mesh,
                                                                            std::span<const TextureInfo> textures,
                                                                            const OutcropOptions& options = {},

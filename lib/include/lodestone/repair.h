@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <lodestone/mesh.h>
 
@@ -50,5 +51,9 @@ struct RepairReport {
 /// features are kept even if no triangle uses them any more (see remove_unused()). Precondition: validate(mesh).
 /// Deterministic. O(size log size).
 RepairReport repair(Mesh& mesh, const RepairOptions& options = {});
+
+/// Takes the texture from the marked faces: they get copies of their materials without it, appended. `faces` has one
+/// element per triangle.
+void leave_plain(Mesh& mesh, const std::vector<bool>& faces);
 
 }  // namespace lodestone

@@ -75,4 +75,19 @@ RepairReport repair(Mesh& mesh, const RepairOptions& options) {
   return report;
 }
 
+void leave_plain(Mesh& mesh, const std::vector<bool>& faces) {
+  std::vector<MaterialId> plain(mesh.materials.size(), none);  // per material: its copy
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) {
+    const MaterialId m = mesh.face_material(f);
+    if (!faces[f] || mesh.materials[m].texture == none) continue;
+    if (plain[m] == none) {
+      plain[m] = static_cast<MaterialId>(mesh.materials.size());
+      mesh.materials.push_back(Material{mesh.materials[m]});
+      mesh.materials.back().texture = none;
+    }
+    if (mesh.face_materials.empty()) mesh.face_materials.assign(mesh.triangle_count(), 0);
+    mesh.face_materials[f] = plain[m];
+  }
+}
+
 }  // namespace lodestone

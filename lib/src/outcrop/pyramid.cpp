@@ -408,9 +408,12 @@ Status OutcropBuilder::climb() {
 
 Result<std::shared_ptr<const OutcropPyramid>> OutcropBuilder::build() {
   if (Status status = check(mesh_, textures_, options_); !status) return status.error();
-  auto segmentation = outcrop::segment_by_image(mesh_, textures_);
-  if (!segmentation) return segmentation.error();
-  segmentation_ = std::move(*segmentation);
+  segmentation_ = outcrop::segment_by_image(mesh_, textures_);
+  std::vector<Warning> warnings;
+  if (segmentation_.plain_faces > 0) {
+    warnings.push_back({"a triangle's texture repeats more than four times or lies too far out, it stays plain",
+                        "triangle " + std::to_string(segmentation_.first_plain), segmentation_.plain_faces});
+  }
   plan_bytes();
   tree_ = outcrop::make_cells(mesh_, segmentation_, bytes_, options_.split);
   out_->surroundings_ = mesh_;
@@ -420,7 +423,7 @@ Result<std::shared_ptr<const OutcropPyramid>> OutcropBuilder::build() {
   name_faces();
   segmentation_.faces.clear();
   if (Status status = climb(); !status) return status.error();
-  return std::shared_ptr<const OutcropPyramid>{std::move(out_)};
+  return {std::shared_ptr<const OutcropPyramid>{std::move(out_)}, std::move(warnings)};
 }
 
 Result<std::shared_ptr<const OutcropPyramid>> OutcropPyramid::build(Mesh mesh, std::span<const TextureInfo> textures,

@@ -9,6 +9,8 @@
 #include <map>
 #include <utility>
 
+#include <lodestone/repair.h>
+
 #include "base/disjoint_sets.h"
 #include "mesh/vertex_copy.h"
 #include "mesh/weld.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double repeat_slack = 1e-4;  // of a texture: how far a chart may stick out without being moved
 constexpr double most_repeats = 4.0;
+constexpr double farthest_repeat = 1 << 20;  // where a step of floats is an eighth of the image
 
 struct Extent {
   glm::dvec2 low{std::numeric_limits<double>::infinity()};
@@ -98,18 +101,39 @@ class Unwrapper {
   std::map<std::pair<VertexId, std::pair<int, int>>, VertexId> copies_;
 };
 
-// Used part, texel size and whether any face asks for too much.
-Status measure(const Mesh& mesh, const std::vector<FaceId>& faces, const glm::uvec2& image_px,
-               OutcropSegment& segment) {
+// One corner far out is a damaged number, and many repeats are none that a photograph has: neither is worth more texels
+// than the rest of the outcrop together.
+void leave_endless_plain(Mesh& mesh, std::span<const TextureInfo> textures, Segmentation& out) {
+  std::vector<bool> faces(mesh.vertices.uvs.empty() ? 0 : mesh.triangle_count());
+  for (FaceId f = 0; f < faces.size(); ++f) {
+    const std::uint32_t texture = mesh.materials[mesh.face_material(f)].texture;
+    if (texture == none || textures[texture].width_px == 0) continue;
+    const Extent extent = extent_of(mesh, f);
+    const glm::dvec2 farthest = glm::max(glm::abs(extent.low), glm::abs(extent.high));
+    faces[f] = glm::any(glm::greaterThan(extent.high - extent.low, glm::dvec2{most_repeats})) ||
+               glm::any(glm::greaterThan(farthest, glm::dvec2{farthest_repeat}));
+    if (!faces[f]) continue;
+    ++out.plain_faces;
+    out.first_plain = std::min(out.first_plain, f);
+  }
+  if (out.plain_faces == 0) return;
+  leave_plain(mesh, faces);
+  // The number itself would be all that the collapse sees.
+  std::vector<bool> shown(mesh.vertex_count(), false);
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    if (!faces[i / 3]) shown[mesh.indices[i]] = true;
+  }
+  for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
+    if (!shown[v]) mesh.vertices.uvs[v] = glm::vec2{0.0F};
+  }
+}
+
+// Used part and texel size.
+void measure(const Mesh& mesh, const std::vector<FaceId>& faces, const glm::uvec2& image_px, OutcropSegment& segment) {
   Extent used;
   double area_m2 = 0.0;
   double area_px = 0.0;
   for (const FaceId f : faces) {
-    const Extent extent = extent_of(mesh, f);
-    if (glm::any(glm::greaterThan(extent.high - extent.low, glm::dvec2{most_repeats}))) {
-      return Error{ErrorCode::BadData, "a triangle repeats its texture more than four times, cut it or leave it plain",
-                   "triangle " + std::to_string(f)};
-    }
     glm::dvec2 p[3];
     for (int k = 0; k < 3; ++k) {
       p[k] = to_pixels(mesh.vertices.uvs[mesh.indices[3 * std::size_t{f} + k]], image_px);
@@ -134,7 +158,6 @@ Status measure(const Mesh& mesh, const std::vector<FaceId>& faces, const glm::uv
   segment.top_px = whole_begin(used.low.y, image_px.y);
   segment.width_px = static_cast<std::uint32_t>(std::max(1, whole_end(used.high.x, image_px.x) - segment.left_px));
   segment.height_px = static_cast<std::uint32_t>(std::max(1, whole_end(used.high.y, image_px.y) - segment.top_px));
-  return Done{};
 }
 
 void list_segments(const Mesh& mesh, std::span<const TextureInfo> textures, Segmentation& out) {
@@ -165,8 +188,9 @@ void list_segments(const Mesh& mesh, std::span<const TextureInfo> textures, Segm
 
 }  // namespace
 
-Result<Segmentation> segment_by_image(Mesh& mesh, std::span<const TextureInfo> textures) {
+Segmentation segment_by_image(Mesh& mesh, std::span<const TextureInfo> textures) {
   Segmentation out;
+  leave_endless_plain(mesh, textures, out);
   list_segments(mesh, textures, out);
   const std::uint32_t vertices = mesh.vertex_count();
   Unwrapper unwrapper{mesh};
@@ -186,7 +210,7 @@ Result<Segmentation> segment_by_image(Mesh& mesh, std::span<const TextureInfo> t
   for (std::size_t s = 0; s < out.segments.size(); ++s) {
     out.segments[s].triangles = static_cast<std::uint32_t>(out.faces[s].size());
     if (out.segments[s].texture == none) continue;
-    if (Status status = measure(mesh, out.faces[s], out.image_px[s], out.segments[s]); !status) return status.error();
+    measure(mesh, out.faces[s], out.image_px[s], out.segments[s]);
   }
   return out;
 }

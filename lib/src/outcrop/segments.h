@@ -16,12 +16,14 @@ struct Segmentation {
   std::vector<glm::uvec2> image_px;                // per segment: whole photograph
   std::vector<std::uint32_t> segment_of_material;  // per material of the mesh
   std::vector<std::vector<FaceId>> faces;          // per segment, ascending
+  std::uint32_t plain_faces = 0;                   // that were left without their texture
+  FaceId first_plain = none;
 };
 
 // Shifts every chart of the mesh by whole repeats of its texture so that it begins within 0..1, face by face where a
-// chart is wider than the image (its vertices are split there). Errors: BadData for a face that repeats its texture
-// more than four times.
-[[nodiscard]] Result<Segmentation> segment_by_image(Mesh& mesh, std::span<const TextureInfo> textures);
+// chart is wider than the image (its vertices are split there). Faces that repeat their texture more than four times,
+// or lie too many repeats away, lose it.
+[[nodiscard]] Segmentation segment_by_image(Mesh& mesh, std::span<const TextureInfo> textures);
 
 // Pixels from the top left of the photograph.
 [[nodiscard]] inline glm::dvec2 to_pixels(const glm::vec2& uv, const glm::uvec2& image_px) noexcept {

@@ -242,7 +242,7 @@ TEST_CASE("Charts that lie together in the image but apart in space are cut in s
   CHECK(sheet->segments().front().split == TileSplit::Texture);
 }
 
-TEST_CASE("Textures that repeat are unwrapped, and refused where a triangle repeats too often") {
+TEST_CASE("Textures that repeat are unwrapped, and left out where a triangle repeats too often") {
   Mesh mesh = textured(grid(20, 20), 64);
   for (auto& uv : mesh.vertices.uvs) uv = uv * 3.0F - 7.5F;
   const std::vector<TextureInfo> sizes = texture_sizes(mesh);
@@ -252,10 +252,12 @@ TEST_CASE("Textures that repeat are unwrapped, and refused where a triangle repe
   CHECK((*pyramid)->levels().front().triangles == mesh.triangle_count());
 
   for (auto& uv : mesh.vertices.uvs) uv *= 100.0F;
-  const auto refused = OutcropPyramid::build(mesh, sizes, {});
-  REQUIRE(!refused);
-  CHECK(refused.error().code == ErrorCode::BadData);
-  CHECK(refused.error().message.find("repeats") != std::string::npos);
+  const auto plain = OutcropPyramid::build(mesh, sizes, {});
+  REQUIRE(plain);
+  REQUIRE(plain.warnings().size() == 1);
+  CHECK(plain.warnings().front().count == mesh.triangle_count());
+  REQUIRE((*plain)->segments().size() == 1);
+  CHECK((*plain)->segments().front().texture == none);
 }
 
 TEST_CASE("Charts without area, plain faces and vertex colours become tiles as well") {
