@@ -67,7 +67,7 @@ struct Picture {
 
 /// How a sweep goes from level to level.
 enum class SweepStyle : std::uint8_t {
-  Morph,     ///< continuous, geomorph
+  Morph,     ///< continuous, geomorph; what facet shifts draw anew fades (Motion::MorphFade)
   Hard,      ///< continuous, records snap
   Discrete,  ///< a few fixed levels, switched half way between them
   Fade,      ///< the same, cross-faded over `fade_seconds` (both are drawn)

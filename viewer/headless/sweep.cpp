@@ -89,15 +89,17 @@ class Performer {
 
 class Continuous final : public Performer {
  public:
-  Continuous(const Set& set, std::shared_ptr<const ProgressiveModel> model, const Schedule& schedule,
-             const SweepOptions& options)
+  Continuous(const Set& set, const Frame& second, std::shared_ptr<const ProgressiveModel> model,
+             const Schedule& schedule, const SweepOptions& options)
       : set_(set),
+        second_(second),
         schedule_(schedule),
-        cursor_(model, {.motion = options.style == SweepStyle::Morph ? Motion::Morph : Motion::Hard,
+        cursor_(model, {.motion = options.style == SweepStyle::Morph ? Motion::MorphFade : Motion::Hard,
                         .morph_seconds = options.morph_seconds,
                         .start_level = schedule.level_at(0.0)}),
         geometry_(set.stage.gl(), arrays_of(cursor_)) {
     cursor_.clear_dirty();
+    if (cursor_.beside() != nullptr) beside_.emplace(set.stage.gl(), arrays_of(*cursor_.beside()));
   }
 
   void draw(std::uint32_t frame) override {
@@ -105,15 +107,24 @@ class Continuous final : public Performer {
     if (frame > 0) cursor_.step({}, frame_step_s);
     geometry_.update(cursor_);
     set_.draw(geometry_, set_.frame);
+    if (cursor_.fade() > 0.0F) {
+      beside_->update(*cursor_.beside());
+      set_.draw(*beside_, second_);
+    }
   }
-  Image image() override { return set_.stage.presenter().read(set_.frame); }
+  Image image() override {
+    if (cursor_.fade() <= 0.0F) return set_.stage.presenter().read(set_.frame);
+    return set_.stage.presenter().read_blend(set_.frame, second_, static_cast<double>(cursor_.fade()));
+  }
   [[nodiscard]] std::size_t memory_bytes() const override { return set_.model.memory_bytes() + cursor_.memory_bytes(); }
 
  private:
   const Set& set_;
+  const Frame& second_;
   const Schedule& schedule_;
   Cursor cursor_;
   Geometry geometry_;
+  std::optional<Geometry> beside_;
 };
 
 class Discrete final : public Performer {
@@ -261,12 +272,12 @@ Result<SweepReport> sweep(std::shared_ptr<const ProgressiveModel> model, const S
   const Schedule schedule{options, *model, *view};
 
   Result<SweepReport> report = Error{};
+  const auto second = Frame::create(gl, frame_size(options.render));
+  if (!second) return second.error();
   if (options.style == SweepStyle::Morph || options.style == SweepStyle::Hard) {
-    Continuous performer{set, model, schedule, options};
+    Continuous performer{set, *second, model, schedule, options};
     report = perform(performer, **stage, options, context);
   } else {
-    const auto second = Frame::create(gl, frame_size(options.render));
-    if (!second) return second.error();
     const double fade_s = options.style == SweepStyle::Fade ? options.fade_seconds : 0.0;
     const auto fade_frames = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(std::lround(fade_s / frame_step_s)));
     Discrete performer{set, *second, schedule, options.discrete_levels, fade_frames};

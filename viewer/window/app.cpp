@@ -24,9 +24,10 @@ Sphere sphere_of(const Box& box) { return {.center = box.center(), .radius_m = b
 
 App::Shown::Shown(const Gl& gl, std::shared_ptr<const ProgressiveModel> m, double morph_seconds, Level level)
     : model(std::move(m)),
-      cursor(model, {.motion = Motion::Morph, .morph_seconds = morph_seconds, .start_level = level}),
+      cursor(model, {.motion = Motion::MorphFade, .morph_seconds = morph_seconds, .start_level = level}),
       geometry(gl, arrays_of(cursor)) {
   cursor.clear_dirty();
+  if (cursor.beside() != nullptr) beside.emplace(gl, arrays_of(*cursor.beside()));
 }
 
 Result<std::unique_ptr<App>> App::create(const WindowOptions& options) {
@@ -251,7 +252,9 @@ void App::move_on(double dt_s) {
   if (!shown_) return;
   control_.drive(shown_->cursor, view(), dt_s);
   const StepResult step = shown_->cursor.step({}, dt_s);
-  uploaded_kb_ = static_cast<double>(shown_->geometry.update(shown_->cursor)) / 1024.0;
+  std::size_t uploaded_bytes = shown_->geometry.update(shown_->cursor);
+  if (shown_->cursor.fade() > 0.0F) uploaded_bytes += shown_->beside->update(*shown_->cursor.beside());
+  uploaded_kb_ = static_cast<double>(uploaded_bytes) / 1024.0;
   still_frames_ = step.changed || !step.arrived ? 0 : still_frames_ + 1;
 }
 
@@ -298,6 +301,7 @@ Status App::fit_frame_to_window() {
   auto made = Frame::create(*gl_, wanted);
   if (!made) return made.error();
   frame_.emplace(std::move(made).value());
+  second_.reset();
   camera_.resize(wanted.width_px, wanted.height_px);
   return Done{};
 }
@@ -327,6 +331,19 @@ PanelResult App::lay_out_panel(const View& view) {
   return panel_.layout(state);
 }
 
+// The level that fades in or out, into a frame of its own; false if there is none, or no room for the frame.
+bool App::draw_second(Item item, const Box& box) {
+  if (shown_->cursor.fade() <= 0.0F) return false;
+  if (!second_) {
+    auto made = Frame::create(*gl_, frame_->size());
+    if (!made) return false;
+    second_.emplace(std::move(made).value());
+  }
+  item.geometry = &*shown_->beside;
+  renderer_.draw(*second_, view(), box, {&item, 1}, look_);
+  return true;
+}
+
 void App::draw_frame() {
   const auto start = std::chrono::steady_clock::now();
   const Box box = bounds();
@@ -337,7 +354,11 @@ void App::draw_frame() {
   if (clusters_) items = clusters_->items(look_.coloring);
   if (street_) items = street_->items();
   renderer_.draw(*frame_, view(), box, items, look_);
-  presenter_.present(*frame_, 0);
+  if (item && draw_second(*item, box)) {
+    presenter_.present_blend(*frame_, *second_, static_cast<double>(shown_->cursor.fade()), 0);
+  } else {
+    presenter_.present(*frame_, 0);
+  }
   panel_.draw();
   gl_->finish();
   frame_times_.add(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

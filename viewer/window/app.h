@@ -33,6 +33,7 @@ class App {
     std::shared_ptr<const ProgressiveModel> model;
     Cursor cursor;
     Geometry geometry;
+    std::optional<Geometry> beside;
   };
 
   App(const WindowOptions& options, std::unique_ptr<GlfwWindow> window, std::unique_ptr<Gl> gl, Renderer renderer,
@@ -54,6 +55,7 @@ class App {
   void use_input(double dt_s);
   void use_keys();
   void draw_frame();
+  [[nodiscard]] bool draw_second(Item item, const Box& box);
   void obey(const PanelResult& asked);
   [[nodiscard]] Status fit_frame_to_window();
   [[nodiscard]] PanelResult lay_out_panel(const View& view);
@@ -66,6 +68,7 @@ class App {
   Renderer renderer_;
   Presenter presenter_;
   std::optional<Frame> frame_;
+  std::optional<Frame> second_;  ///< made when a model first fades
   Panel panel_;
   Loader loader_;
   std::unique_ptr<Surfaces> surfaces_;

@@ -7,9 +7,10 @@ namespace lodestone::render {
 
 StreetScene::House::House(const Gl& gl, const Street::House& house, double morph_seconds)
     : cursor(house.model,
-             {.motion = Motion::Morph, .morph_seconds = morph_seconds, .start_level = house.model->record_count()}),
+             {.motion = Motion::MorphFade, .morph_seconds = morph_seconds, .start_level = house.model->record_count()}),
       geometry(gl, arrays_of(cursor)) {
   cursor.clear_dirty();
+  if (cursor.beside() != nullptr) beside.emplace(gl, arrays_of(*cursor.beside()));
 }
 
 StreetScene::StreetScene(const Gl& gl, std::shared_ptr<const Street> street, double morph_seconds)
@@ -33,6 +34,7 @@ StreetScene::StreetScene(const Gl& gl, std::shared_ptr<const Street> street, dou
 void StreetScene::update(const View& view, double error_px, double dt_s) {
   still_ = true;
   uploaded_bytes_ = 0;
+  items_.resize(1 + houses_.size());
   for (std::size_t i = 0; i < houses_.size(); ++i) {
     House& house = *houses_[i];
     View from_house = view;
@@ -41,6 +43,15 @@ void StreetScene::update(const View& view, double error_px, double dt_s) {
     const StepResult step = house.cursor.step({}, dt_s);
     still_ = still_ && step.arrived && !step.changed;
     uploaded_bytes_ += house.geometry.update(house.cursor);
+    // Houses fade each by its own clock, so their pixels are shared out instead of blending two pictures.
+    const float fade = house.cursor.fade();
+    items_[1 + i].share = fade > 0.0F ? fade - 1.0F : 1.0F;
+    if (fade <= 0.0F) continue;
+    uploaded_bytes_ += house.beside->update(*house.cursor.beside());
+    Item beside = items_[1 + i];
+    beside.geometry = &*house.beside;
+    beside.share = fade;
+    items_.push_back(beside);
   }
 }
 

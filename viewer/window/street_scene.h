@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,7 @@ class StreetScene {
     House(const Gl& gl, const Street::House& house, double morph_seconds);
     Cursor cursor;
     Geometry geometry;
+    std::optional<Geometry> beside;
   };
 
   std::shared_ptr<const Street> street_;
@@ -42,7 +44,7 @@ class StreetScene {
   SortedMesh sorted_ground_;
   Geometry ground_;
   Surfaces ground_surfaces_;
-  std::vector<Item> items_;  ///< the ground, then the houses
+  std::vector<Item> items_;  ///< the ground, the houses, then the second pictures of those that fade
   bool still_ = false;
   std::size_t uploaded_bytes_ = 0;
 };

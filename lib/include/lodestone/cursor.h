@@ -13,12 +13,24 @@
 ///     }
 ///
 /// All memory is taken at construction; set_target, step and jump allocate nothing, cannot fail and cost O(records
-/// moved). Construction costs O(slots + records) with Morph (which looks up where each vertex merges), else O(slots +
+/// moved). Construction costs O(slots + records) with a morph (which looks up where each vertex merges), else O(slots +
 /// start level). One cursor belongs to one thread; many cursors share one model.
 ///
 /// Geomorph (Hoppe 1996, section 3.2, bounded in time). A record on its way is drawn with the finer topology, its
 /// vertices part of the way to where they merge: position, normal, uv and colour together. Faces go, or come, only at
 /// the end where they have no area. Every record takes `morph_seconds`; turning back at any instant is seamless.
+///
+/// Faces drawn anew. Facet shifts of windows and doors end in faces that no vertex of those before glides to; with
+/// Morph these appear at the record's end. With MorphFade they fade in, where they are, while everything else glides:
+/// while fade() is above 0, draw beside() as well, and blend that picture over the first by fade():
+///
+///     draw(cursor, first_frame);
+///     if (cursor.fade() > 0.0F) draw(*cursor.beside(), second_frame);
+///     present(mix(first_frame, second_frame, cursor.fade()));   // or dither: the second where a pixel's noise <
+///     fade()
+///
+/// Records that fade take `morph_seconds` too, with those set in motion together with them; what is asked for meanwhile
+/// waits until they have arrived. Models of edge collapses never fade.
 #pragma once
 
 #include <cstdint>
@@ -78,12 +90,14 @@ enum class IndexWidth : std::uint8_t {
 };
 
 enum class Motion : std::uint8_t {
-  Morph,  ///< records glide (geomorph)
-  Hard,   ///< records snap
+  Morph,      ///< records glide (geomorph)
+  Hard,       ///< records snap
+  MorphFade,  ///< as Morph, and what is drawn anew fades: two pictures are blended while such records are on their way
 };
 
 struct CursorOptions {
-  /// Morph needs its own copy of the vertices; Hard shares the model's where no record moves a vertex.
+  /// Morph needs its own copy of the vertices; Hard shares the model's where no record moves a vertex. MorphFade holds
+  /// a Hard cursor besides, if the model has edit records.
   Motion motion = Motion::Morph;
   /// Time that one record takes from start to end. Longer is smoother and lags more. Range 0..10.
   double morph_seconds = 0.35;
@@ -97,7 +111,7 @@ struct CursorOptions {
 
 /// How much a step may do.
 struct StepBudget {
-  std::uint32_t max_records = none;  ///< records set in motion (Morph) or moved (Hard)
+  std::uint32_t max_records = none;  ///< records set in motion (Morph, MorphFade) or moved (Hard)
 };
 
 /// What a step did.
@@ -147,6 +161,13 @@ class Cursor {
   /// One per material, in order; empty ranges included.
   [[nodiscard]] std::span<const DrawRange> draws() const noexcept;
 
+  /// Share 0..1 of beside()'s picture in what is to be seen; 0: this cursor's is all.
+  [[nodiscard]] float fade() const noexcept;
+  /// What to draw beside while fade() is above 0, with arrays, draws and dirty ranges of its own; step and jump are
+  /// left to this cursor. Null if nothing can fade.
+  [[nodiscard]] Cursor* beside() noexcept { return beside_.get(); }
+  [[nodiscard]] const Cursor* beside() const noexcept { return beside_.get(); }
+
   /// Element ranges (vertices, indices) that changed since clear_dirty(); sorted, disjoint, blocks of `dirty_block`.
   /// At construction everything is dirty. They cover every changed byte of the arrays.
   [[nodiscard]] std::span<const Range> dirty_vertices() const noexcept;
@@ -165,6 +186,7 @@ class Cursor {
   std::shared_ptr<const ProgressiveModel> model_;
   std::unique_ptr<std::byte[]> block_;  ///< the one allocation: the state and all arrays
   State* state_ = nullptr;              ///< in block_
+  std::unique_ptr<Cursor> beside_;      ///< MorphFade: the level that fades in or out
 };
 
 }  // namespace lodestone

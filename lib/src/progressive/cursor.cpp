@@ -63,12 +63,18 @@ struct Cursor::State {
   progressive::PlayFunction play = nullptr;
   VertexPointers shown;  // what is drawn; positions null if it is the model's own arrays
   VertexId* merges = nullptr;
+  std::uint8_t* fading = nullptr;  // per record: 1 if it draws faces anew; null if nothing is to fade
   progressive::Geomorph geomorph;
   DirtyMap dirty_indices, dirty_vertices;
 
+  // Only edits can draw faces anew.
+  static bool fades(const ProgressiveModel& model, const CursorOptions& options) {
+    return options.motion == Motion::MorphFade && !model.data().edits.empty();
+  }
   static std::size_t carve(std::byte* block, const ProgressiveModel& model, const CursorOptions& options);
   void fill(const ModelData& data, const CursorOptions& options, Level start);
   void look_up_merges(const ModelData& data);
+  [[nodiscard]] bool draws_anew(const progressive::EditBlock& edit, std::uint32_t first_vertex) const;
   template <class Index>
   void fill_base(const ModelData& data);
   [[nodiscard]] VertexId index(CornerId corner) const noexcept {
@@ -90,7 +96,7 @@ std::size_t Cursor::State::carve(std::byte* block, const ProgressiveModel& model
   Carver carver{block};
   State fields;
   State* place = carver.take<State>(1);
-  fields.morphs = options.motion == Motion::Morph;
+  fields.morphs = options.motion != Motion::Hard;
   fields.index_bytes = options.index_width == IndexWidth::Smallest && slots <= short_slots ? 2 : 4;
   fields.play = progressive::select_play(fields.index_bytes, data.corner_bytes);
   fields.arrays.indices = carver.take<std::byte>(static_cast<std::size_t>(corners) * fields.index_bytes);
@@ -101,6 +107,7 @@ std::size_t Cursor::State::carve(std::byte* block, const ProgressiveModel& model
   if (fields.morphs) {
     fields.shown = carver.take_vertices(data.vertices);
     fields.merges = carver.take<VertexId>(slots);
+    if (fades(model, options)) fields.fading = carver.take<std::uint8_t>(data.shapes.size());
     if (moves) fields.arrays.shown = fields.shown;
   }
   const auto take_dirty = [&](std::uint32_t elements) {
@@ -148,17 +155,19 @@ void Cursor::State::fill(const ModelData& data, const CursorOptions& options, Le
     morph.fine = arrays.exact.positions != nullptr ? read_only(arrays.exact) : progressive::pointers(data.vertices);
     morph.shown = shown;
     morph.merges = merges;
+    morph.fades = fading;
     geomorph = progressive::Geomorph{&data, &arrays, play, morph, std::clamp(options.morph_seconds, 0.0, 10.0)};
   }
   play(data, arrays, at, start);
   geomorph.rest(at);
 }
 
-// Plays the whole stack up, noting where each fan's vertex splits from, and down again.
+// Plays the whole stack up, noting where each fan's vertex splits from and which edits draw faces anew, and down again.
 void Cursor::State::look_up_merges(const ModelData& data) {
   for (VertexId slot = 0; slot < data.base_vertex_count; ++slot) merges[slot] = slot;
   const std::uint32_t words = data.value_words();
   while (at.level < data.shapes.size()) {
+    const StackPosition below = at;
     StackPosition walk = at;
     const progressive::RecordView record = progressive::walk_up(data, walk, words);
     for (std::uint32_t i = 0; i < record.vertex_count; ++i) {
@@ -166,8 +175,38 @@ void Cursor::State::look_up_merges(const ModelData& data) {
           record.merges != nullptr ? record.merges[i] : index(progressive::load_corner(data, at.fan_corner));
     }
     play(data, arrays, at, at.level + 1);
+    if (fading == nullptr) continue;
+    const bool anew = record.merges != nullptr &&
+                      draws_anew(progressive::EditBlock{data.edits.data() + below.edit_word}, below.vertices);
+    fading[below.level] = anew ? 1 : 0;
+    // What fades stays where it is: gliding to where the new faces are not would shear the old ones.
+    for (VertexId slot = below.vertices; anew && slot < at.vertices; ++slot) merges[slot] = slot;
   }
   play(data, arrays, at, 0);
+}
+
+// Whether faces are elsewhere once all vertices of this edit have come to where they merge: a corner that is re-pointed
+// to another vertex than that, or a face that goes and still has an area. A fan never does either. The indices are
+// those above the edit.
+bool Cursor::State::draws_anew(const progressive::EditBlock& edit, std::uint32_t first_vertex) const {
+  const auto end_of = [&](VertexId slot) {
+    while (slot >= first_vertex && merges[slot] != slot) slot = merges[slot];
+    return slot;
+  };
+  for (const std::uint32_t* pair = edit.corners(); pair != edit.moved(); pair += 2) {
+    const VertexId fine = index(pair[0]);
+    if (end_of(fine) != (fine ^ pair[1])) return true;
+  }
+  for (const std::uint32_t* group = edit.groups(); group != edit.corners(); group += 2 + 3 * group[1]) {
+    for (std::uint32_t face = 0; face < group[1]; ++face) {
+      const std::uint32_t* corners = group + 2 + 3 * face;
+      const VertexId a = end_of(corners[0]);
+      const VertexId b = end_of(corners[1]);
+      const VertexId c = end_of(corners[2]);
+      if (a != b && b != c && c != a) return true;
+    }
+  }
+  return false;
 }
 
 Target Target::pixels(const View& view, double max_error_px, double hysteresis) noexcept {
@@ -183,6 +222,10 @@ Cursor::Cursor(std::shared_ptr<const ProgressiveModel> model, const CursorOption
   State::carve(block_.get(), *model_, options);
   state_ = std::launder(reinterpret_cast<State*>(block_.get()));
   state_->fill(model_->data(), options, std::min(options.start_level, model_->record_count()));
+  if (!State::fades(*model_, options)) return;
+  CursorOptions still = options;
+  still.motion = Motion::Hard;
+  beside_ = std::make_unique<Cursor>(model_, still);
 }
 
 void Cursor::set_target(const Target& target) noexcept {
@@ -219,6 +262,7 @@ StepResult Cursor::step(const StepBudget& budget, double dt_s) noexcept {
   if (s.morphs) {
     result.changed = !s.geomorph.resting();
     result.records_moved = s.geomorph.step(s.at, s.target, budget.max_records, dt_s, s.dirty_vertices);
+    if (s.geomorph.fading()) beside_->jump(s.geomorph.fade_level());
     result.changed = result.changed || result.records_moved > 0 || !s.geomorph.resting();
     result.arrived = s.geomorph.resting() && s.at.level == s.target;
     return result;
@@ -246,6 +290,8 @@ Level Cursor::target_level() const noexcept { return state_->target; }
 bool Cursor::morphing() const noexcept { return !state_->geomorph.resting(); }
 std::uint32_t Cursor::vertex_count() const noexcept { return state_->at.vertices; }
 std::uint32_t Cursor::triangle_count() const noexcept { return state_->at.triangles; }
+
+float Cursor::fade() const noexcept { return state_->geomorph.fading() ? state_->geomorph.fade_share() : 0.0F; }
 
 double Cursor::error_m() const noexcept {
   return model_->error_m(morphing() ? state_->geomorph.low_level() : state_->at.level);
@@ -306,6 +352,8 @@ bool Cursor::face_in_use(FaceId slot) const noexcept {
   return 3 * slot - draw.first_index < draw.index_count;
 }
 
-std::size_t Cursor::memory_bytes() const noexcept { return sizeof(*this) + state_->block_bytes; }
+std::size_t Cursor::memory_bytes() const noexcept {
+  return sizeof(*this) + state_->block_bytes + (beside_ ? beside_->memory_bytes() : 0);
+}
 
 }  // namespace lodestone

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Based on: Hoppe 1996, Progressive Meshes, section 3.2 (geomorphs: a vertex moves to its ancestor, attributes too).
 // Differs: bounded in time, not tied to two levels: any number of records glide at once, each batch by its own clock,
-// and the picture is a function of (level, batches) alone, so turning back at any instant is seamless.
+// and the picture is a function of (level, batches) alone, so turning back at any instant is seamless. Records that
+// draw faces anew are cross-faded as well (Li et al. 2019, section 3.3, fade between two whole models; here two levels
+// of one cursor that are a fraction of a second apart, and only while such records are on their way).
 #include "progressive/geomorph.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace lodestone::progressive {
 namespace {
@@ -63,6 +66,7 @@ void add_move(const MorphArrays& arrays, VertexId slot, const std::uint32_t* val
 std::uint32_t Geomorph::step(StackPosition& at, Level target, std::uint32_t max_records, double dt_s,
                              DirtyMap& dirty) noexcept {
   restore(at, dirty);
+  target = reachable(at, target);
   split_at(at, target);
   std::uint32_t moved = start(at, target, max_records);
   const double share = morph_seconds_ > 0.0 ? std::clamp(dt_s / morph_seconds_, 0.0, 1.0) : 1.0;
@@ -70,6 +74,18 @@ std::uint32_t Geomorph::step(StackPosition& at, Level target, std::uint32_t max_
   moved += land(at, target);
   show(at, dirty);
   return moved;
+}
+
+bool Geomorph::any_fades(Level begin, Level end) const noexcept {
+  return arrays_.fades != nullptr && std::memchr(arrays_.fades + begin, 1, end - begin) != nullptr;
+}
+
+// A batch that fades is not split, it has one share: to a target within it, it goes back to its finer end first.
+Level Geomorph::reachable(const StackPosition& at, Level target) const noexcept {
+  if (!fading()) return target;
+  const std::uint32_t place = fading_place();
+  const Level end = end_of(place, at);
+  return target > batches_[place].begin && target < end ? end : target;
 }
 
 void Geomorph::restore(const StackPosition& at, DirtyMap& dirty) noexcept {
@@ -102,11 +118,15 @@ void Geomorph::split_at(const StackPosition& at, Level target) noexcept {
 
 std::uint32_t Geomorph::start(StackPosition& at, Level target, std::uint32_t max_records) noexcept {
   if (resting()) low_ = at;
+  if (fading()) return 0;
   if (target < low_.level) {
-    const Level to = low_.level - std::min(max_records, low_.level - target);
-    if (to == low_.level) return 0;
+    const Level from = low_.level;
+    const Level to = from - std::min(max_records, from - target);
+    if (to == from) return 0;
     while (low_.level > to) walk_down(*data_, low_, data_->value_words());
-    if (!resting() && batches_[0].progress <= join_progress) {
+    const bool fades = any_fades(to, from);
+    if (fades) fading_ = Fading::Lowest;
+    if (!resting() && !fades && batches_[0].progress <= join_progress) {
       batches_[0].begin = to;
       batches_[0].first_vertex = low_.vertices;
     } else {
@@ -118,7 +138,11 @@ std::uint32_t Geomorph::start(StackPosition& at, Level target, std::uint32_t max
   if (target <= at.level || max_records == 0) return 0;
   const Batch batch{at.level, at.vertices, 1.0F};
   const std::uint32_t count = std::min(max_records, target - at.level);
+  const bool fades = any_fades(at.level, at.level + count);
+  // What is drawn beside is a level at rest, so what glides below it arrives first.
+  if (fades && !resting()) return 0;
   play_(*data_, *play_arrays_, at, at.level + count);
+  if (fades) fading_ = Fading::Topmost;
   if (resting() || batches_[count_ - 1].progress < 1.0F - join_progress) {
     make_room();
     insert(count_, batch);
@@ -131,16 +155,22 @@ void Geomorph::advance(Level target, float by) noexcept {
     float& progress = batches_[i].progress;
     progress = std::clamp(batches_[i].begin >= target ? progress + by : progress - by, 0.0F, 1.0F);
   }
+  // The level below it all is what is seen when the lowest batch has faded: what else is on its way has arrived too.
+  if (fading_ == Fading::Lowest && batches_[0].progress >= 1.0F) {
+    for (std::uint32_t i = 1; i < count_; ++i) batches_[i].progress = 1.0F;
+  }
 }
 
 std::uint32_t Geomorph::land(StackPosition& at, Level target) noexcept {
   std::uint32_t moved = 0;
   while (count_ > 0 && batches_[count_ - 1].progress >= 1.0F && batches_[count_ - 1].begin >= target) {
+    if (fading() && fading_place() == count_ - 1) fading_ = Fading::No;
     const Level to = batches_[--count_].begin;
     moved += at.level - to;
     play_(*data_, *play_arrays_, at, to);
   }
   while (count_ > 0 && batches_[0].progress <= 0.0F && batches_[0].begin < target) {
+    if (fading() && fading_place() == 0) fading_ = Fading::No;
     const Level end = end_of(0, at);
     while (low_.level < end) walk_up(*data_, low_, data_->value_words());
     erase(0);
@@ -162,9 +192,10 @@ void Geomorph::add_moves(const StackPosition& at, DirtyMap& dirty) noexcept {
   const std::uint32_t words = data_->value_words();
   StackPosition walk = at;
   for (std::uint32_t b = count_; b-- > 0;) {
-    const float weight = smooth(batches_[b].progress);
+    const float glided = smooth(batches_[b].progress);
     while (walk.level > batches_[b].begin) {
       const RecordView record = walk_down(*data_, walk, words);
+      const float weight = arrays_.fades != nullptr && arrays_.fades[walk.level] != 0 ? 0.0F : glided;
       const std::uint32_t* values = record.values;
       for (std::uint32_t i = 0; i < record.move_count; ++i, values += words) {
         const VertexId slot = record.moved != nullptr ? record.moved[i] : arrays_.merges[record.first_vertex];

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Records on their way. Those in flight are one stretch of the stack, [low, level): drawn with the finer topology,
 // their vertices part of the way to where they merge. The stretch is cut into batches, each of one progress.
+//
+// Records that draw faces anew cannot glide: where their vertices end is not where the new faces lie. They stay as they
+// are and fade: a batch with such a record is the last to start, at either end of the stretch, and until it has arrived
+// the level below it is drawn too (by a second cursor), blended by its progress.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +24,11 @@ struct Batch {
 
 // Memory that a Geomorph uses, given at construction.
 struct MorphArrays {
-  ConstVertexPointers fine;          // values of the level drawn
-  VertexPointers exact;              // the same to write, positions null if no record moves a vertex
-  VertexPointers shown;              // what is drawn
-  const VertexId* merges = nullptr;  // per slot: the lower slot it lies upon when it goes, or itself
+  ConstVertexPointers fine;             // values of the level drawn
+  VertexPointers exact;                 // the same to write, positions null if no record moves a vertex
+  VertexPointers shown;                 // what is drawn
+  const VertexId* merges = nullptr;     // per slot: the lower slot it lies upon when it goes, or itself
+  const std::uint8_t* fades = nullptr;  // per record: 1 if it draws faces anew; null: nothing fades
 };
 
 class Geomorph {
@@ -37,9 +42,14 @@ class Geomorph {
   void rest(const StackPosition& at) noexcept {
     low_ = at;
     count_ = 0;
+    fading_ = Fading::No;
   }
   [[nodiscard]] bool resting() const noexcept { return count_ == 0; }
   [[nodiscard]] Level low_level() const noexcept { return low_.level; }
+  [[nodiscard]] bool fading() const noexcept { return fading_ != Fading::No; }
+  // The level drawn beside, and its share 0..1 of the picture. Precondition: fading().
+  [[nodiscard]] Level fade_level() const noexcept { return batches_[fading_place()].begin; }
+  [[nodiscard]] float fade_share() const noexcept { return batches_[fading_place()].progress; }
 
   // One step: sets up to `max_records` in motion towards `target`, moves those on their way by `dt_s`, applies those
   // that arrived. Returns how many records changed the topology.
@@ -54,6 +64,12 @@ class Geomorph {
   // the motion they jump by 0.02 % of their way.
   static constexpr float join_progress = 1.0F / 128.0F;
 
+  // Which batch fades. Nothing starts while one does, so it stays at its end of the stretch.
+  enum class Fading : std::uint8_t { No, Lowest, Topmost };
+  [[nodiscard]] std::uint32_t fading_place() const noexcept { return fading_ == Fading::Lowest ? 0 : count_ - 1; }
+  [[nodiscard]] bool any_fades(Level begin, Level end) const noexcept;
+
+  [[nodiscard]] Level reachable(const StackPosition& at, Level target) const noexcept;
   void split_at(const StackPosition& at, Level target) noexcept;
   std::uint32_t start(StackPosition& at, Level target, std::uint32_t max_records) noexcept;
   void advance(Level target, float by) noexcept;
@@ -76,6 +92,7 @@ class Geomorph {
   double morph_seconds_ = 0.0;
   StackPosition low_;
   std::uint32_t count_ = 0;
+  Fading fading_ = Fading::No;
   Batch batches_[capacity];  // by level, coarsest first
 };
 

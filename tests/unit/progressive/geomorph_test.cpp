@@ -20,6 +20,22 @@ std::vector<std::shared_ptr<const ProgressiveModel>> collapses() {
           random_model(fins(5), {.seed = 4, .keep_ratio = 0.1, .move_share = 0.3})};
 }
 
+// Some of these records take faces away that still have an area: these fade.
+std::vector<std::shared_ptr<const ProgressiveModel>> with_vanishing() {
+  return {random_model(sphere(14, 20), {.seed = 8, .keep_ratio = 0.05, .vanish_share = 0.2}),
+          random_model(seamed_grid(14, 12), {.seed = 9, .keep_ratio = 0.05, .move_share = 0.3, .vanish_share = 0.3}),
+          random_model(fins(5), {.seed = 10, .keep_ratio = 0.1, .move_share = 0.3, .vanish_share = 0.1})};
+}
+
+// What is to be seen: one picture, or two and the share of the second.
+struct Seen {
+  explicit Seen(const Cursor& cursor) : first(drawn_faces(cursor)), share(cursor.fade()) {
+    if (share > 0.0F) second = drawn_faces(*cursor.beside());
+  }
+  DrawnFaces first, second;
+  float share = 0.0F;
+};
+
 double area(const DrawnFaces& drawn, std::size_t face) {
   const glm::vec3* p = &drawn.positions[3 * face];
   return 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
@@ -42,6 +58,25 @@ Difference difference(const DrawnFaces& a, const DrawnFaces& b) {
     }
   }
   return d;
+}
+
+// The most that any face changes in: how far its corners are apart, and its area if it is drawn in one only, by its
+// share of what is seen.
+Difference difference(const Seen& a, const Seen& b) {
+  Difference worst;
+  const auto add = [&worst](const DrawnFaces& p, const DrawnFaces& q, float share) {
+    const Difference d = difference(p, q);
+    worst.moved_m = std::max(worst.moved_m, share * d.moved_m);
+    worst.area_m2 = std::max(worst.area_m2, share * d.area_m2);
+  };
+  const DrawnFaces& a_second = a.share > 0.0F ? a.second : a.first;
+  const DrawnFaces& b_second = b.share > 0.0F ? b.second : b.first;
+  add(a.first, b.first, std::min(1.0F - a.share, 1.0F - b.share));
+  add(a_second, b_second, std::min(a.share, b.share));
+  // What one shows more of its second picture than the other is exchanged.
+  if (a.share > b.share) add(a_second, b.first, a.share - b.share);
+  if (b.share > a.share) add(a.first, b_second, b.share - a.share);
+  return worst;
 }
 
 }  // namespace
@@ -205,4 +240,90 @@ TEST_CASE("Half way, a vertex is half way to where it merges, a moved one half w
   CHECK(cursor.positions()[0].y == Approx(-0.5F));
   CHECK(cursor.positions()[gone].x == Approx(0.25F));
   CHECK(cursor.positions()[gone].y == Approx(-0.25F));
+}
+
+TEST_CASE("What edge collapses do never fades, and moves as without") {
+  for (const auto& model : collapses()) {
+    Cursor plain{model, {.morph_seconds = 0.2}};
+    Cursor fading{model, {.motion = Motion::MorphFade, .morph_seconds = 0.2}};
+    for (int i = 0; i < 60; ++i) {
+      const Target target = Target::ratio(i % 20 < 10 ? 0.9 : 0.1);
+      for (Cursor* cursor : {&plain, &fading}) {
+        cursor->set_target(target);
+        cursor->step({.max_records = 40}, 0.016);
+      }
+      CHECK(fading.fade() == 0.0F);
+      CHECK(bytes_in_use(fading) == bytes_in_use(plain));
+    }
+  }
+}
+
+TEST_CASE("Faces that are drawn anew fade: no step changes more of the picture than its time") {
+  constexpr double dt_s = 0.002;
+  constexpr double seconds = 0.2;
+  std::mt19937 random{11};
+  for (const auto& model : with_vanishing()) {
+    Cursor cursor{model, {.motion = Motion::MorphFade, .morph_seconds = seconds}};
+    const double size_m = model->bounds().diagonal_m();
+    double most_m2 = 0.0;
+    std::uint32_t faded = 0;
+    Seen before{cursor};
+    for (int i = 0; i < 2000; ++i) {
+      if (i % 130 == 0) cursor.set_target(Target::level(static_cast<Level>(random() % (model->record_count() + 1))));
+      cursor.step({.max_records = 400}, dt_s);
+      Seen now{cursor};
+      const Difference d = difference(before, now);
+      CHECK(d.moved_m < 8.0 * 1.5 * dt_s / seconds * size_m);
+      most_m2 = std::max(most_m2, d.area_m2);
+      faded += now.share > 0.0F ? 1 : 0;
+      before = std::move(now);
+    }
+    CHECK(faded > 100);
+    // The faces that vanish have more than a hundred times that.
+    CHECK(most_m2 < 0.012 * size_m * size_m);
+  }
+}
+
+TEST_CASE("What fades begins as the picture before and ends as the picture after") {
+  for (const auto& model : with_vanishing()) {
+    for (const bool refining : {false, true}) {
+      const Level from = refining ? 0 : model->record_count();
+      Cursor cursor{model, {.motion = Motion::MorphFade, .morph_seconds = 0.5, .start_level = from}};
+      const DrawnFaces at_rest = drawn_faces(cursor);
+      cursor.set_target(Target::level(model->record_count() - from));
+      cursor.step({}, 1e-6);
+      REQUIRE(cursor.morphing());
+      CHECK(cursor.fade() == Approx(refining ? 1.0F : 0.0F).margin(1e-4));
+      const Difference began = difference(at_rest, refining ? drawn_faces(*cursor.beside()) : drawn_faces(cursor));
+      CHECK(began.moved_m < 1e-3);
+      CHECK(began.area_m2 == 0.0);
+      cursor.step({}, 0.5 - 1e-4);
+      CHECK(cursor.fade() == Approx(refining ? 0.0F : 1.0F).margin(1e-3));
+      const DrawnFaces nearly = refining ? drawn_faces(cursor) : drawn_faces(*cursor.beside());
+      CHECK(cursor.step({}, 0.01).arrived);
+      CHECK(cursor.fade() == 0.0F);
+      const Difference ended = difference(nearly, drawn_faces(cursor));
+      CHECK(ended.moved_m < 1e-3);
+      CHECK(ended.area_m2 == 0.0);
+    }
+  }
+}
+
+TEST_CASE("A target within what fades is reached from its finer end") {
+  const auto model = with_vanishing().front();
+  Cursor cursor{model, {.motion = Motion::MorphFade, .start_level = model->record_count()}};
+  cursor.set_target(Target::level(0));
+  for (int i = 0; i < 5; ++i) cursor.step({}, 0.02);
+  REQUIRE(cursor.fade() > 0.0F);
+  const Level middle = model->record_count() / 2;
+  cursor.set_target(Target::level(middle));
+  float share = cursor.fade();
+  while (cursor.fade() > 0.0F && cursor.level() == model->record_count()) {
+    cursor.step({}, 0.02);
+    CHECK(cursor.fade() <= share);
+    share = cursor.fade();
+  }
+  while (!cursor.step({}, 0.02).arrived) {
+  }
+  CHECK(cursor.level() == middle);
 }

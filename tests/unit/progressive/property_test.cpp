@@ -45,8 +45,8 @@ TEST_CASE("Any walk of a cursor ends with the bytes of the level it stands at") 
   CHECK(rc::check([] {
     const Mesh source = any_mesh();
     const auto model = any_model(source);
-    const bool morph = *rc::gen::arbitrary<bool>();
-    Cursor cursor{model, {.motion = morph ? Motion::Morph : Motion::Hard, .morph_seconds = 0.2}};
+    const Motion motion = *rc::gen::element(Motion::Morph, Motion::Hard, Motion::MorphFade);
+    Cursor cursor{model, {.motion = motion, .morph_seconds = 0.2}};
     const auto steps = *rc::gen::inRange(1, 40);
     for (int i = 0; i < steps; ++i) {
       if (*rc::gen::inRange(0, 3) == 0) {

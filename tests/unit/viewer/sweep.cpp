@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <lodestone/edge_collapse.h>
+#include <lodestone/facet_shift.h>
 #include <lodestone/formats.h>
 #include <lodestone/generate.h>
+#include <lodestone/texture_colors.h>
 #include <viewer/headless/headless.h>
 
 #include <algorithm>
@@ -61,6 +63,26 @@ void check_promise(const Model& model, const RenderOptions& render) {
   CHECK(morph <= discrete / 10.0);
   std::printf("pop_max: morph %.3f, hard %.3f (%.1f times), discrete %.3f (%.1f times)\n", morph, hard, hard / morph,
               discrete, discrete / morph);
+}
+
+// By facet shift, from all triangles to 1 %: at most a tenth of five discrete levels and below fading between them,
+// with records of one second.
+void check_facet_promise(const Mesh& mesh) {
+  const auto built = build_by_facet_shift(mesh, {.texture_colors = mean_texture_colors(mesh)});
+  REQUIRE(built.ok());
+  const auto pop_of = [&](SweepStyle style) {
+    SweepOptions options{.frames = 300, .to_ratio = 0.01, .style = style, .morph_seconds = 1.0};
+    options.render = {.width_px = 160, .height_px = 120};
+    return report_of(built->model, options).pop_max;
+  };
+  const double morph = pop_of(SweepStyle::Morph);
+  const double discrete = pop_of(SweepStyle::Discrete);
+  const double fade = pop_of(SweepStyle::Fade);
+  CAPTURE(morph, discrete, fade);
+  CHECK(morph <= discrete / 10.0);
+  CHECK(morph < fade);
+  std::printf("pop_max: facet shift %.3f, discrete %.3f (%.1f times), fading %.3f\n", morph, discrete, discrete / morph,
+              fade);
 }
 
 constexpr RenderOptions small{.width_px = 160, .height_px = 96, .supersample = 2};
@@ -194,6 +216,26 @@ TEST_CASE("a morphing sweep of a real building pops far less than hard and discr
   RenderOptions once = small;
   once.supersample = 1;
   check_promise(real_model(root / "buildings/4018210/4018210.obj"), once);
+}
+
+void check_facet_promise_of(const char* building) {
+  LODESTONE_REQUIRE_DATA(root);
+  const auto loaded = read_mesh(root / "buildings" / building);
+  REQUIRE(loaded.ok());
+  check_facet_promise(loaded->mesh);
+}
+
+TEST_CASE("a facet shift's windows fade: less pops than between fixed levels that fade, a tenth of switched ones") {
+  SECTION("generated house with a spire") {
+    const auto mesh = generate_house({GenerateOptions{.triangles = 6'000}, Roof::Spire});
+    REQUIRE(mesh.ok());
+    check_facet_promise(*mesh);
+  }
+  SECTION("surveyed building") { check_facet_promise_of("4018267/4018267.obj"); }
+}
+
+TEST_CASE("a facet shift's windows fade on 4018215 too", "[.][real-sweeps]") {
+  check_facet_promise_of("4018215/4018215.obj");
 }
 
 // Minutes: scripts/long_checks.sh runs it. In pictures as large as those of docs/sweeps.md; in the smaller ones of the
