@@ -367,7 +367,12 @@ bool Builder::shift_planes(double price) {
     const Plan plan = planner_.plan(planner_.way_m(offer.direction));
     if (plan.moves.empty()) continue;
     const Verdict v = judge_shift(mesh_, moved_, plan.moves);
-    if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m || cuts_through()) continue;
+    if (!v.allowed || v.key() > price || v.error_m > options_.max_error_m) continue;
+    if (cuts_through()) {
+      // Not asked again at this price unless something around it changes.
+      known_[static_cast<std::size_t>(offer.direction)][offer.surface].key = std::nextafter(price, infinity);
+      continue;
+    }
     kinds_.prepare(plan.moves, errand_);
     apply(mesh_, moved_, v.error_m, log_);
     report_.shifts += 1 + follow(v.error_m);

@@ -10,6 +10,7 @@ namespace lodestone::facets {
 namespace {
 
 constexpr std::size_t small_part = 1024;  // faces
+constexpr double cell_work = 4.0;         // of a cell of the lattice, beside a face that is walked by
 constexpr double touch_m = 1e-3;          // that deep is no crossing yet
 
 using Corners = std::array<glm::dvec3, 3>;
@@ -131,7 +132,8 @@ bool CrossingFinder::makes_crossing(const Moved& moved) const {
     const auto is_near = [&](FaceId g) { return boxes_[g].touches(around); };
     bool found = false;
     const std::vector<FaceId>& part = parts_.part_of(first);
-    if (part.size() <= small_part) {
+    // What is large itself would look into more cells than there are faces.
+    if (part.size() <= small_part || cell_work * index_.work(all.low, all.high) > static_cast<double>(part.size())) {
       found = std::any_of(part.begin(), part.end(), [&](FaceId g) { return is_near(g) && meets(g); });
     } else {
       index_.visit(all.low, all.high, [&](FaceId g) {

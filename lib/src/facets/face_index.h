@@ -3,6 +3,7 @@
 // cells are as large as the face, so that it costs the same to move one whatever its size.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -21,16 +22,22 @@ class FaceIndex {
   void put(FaceId f);
   void take(FaceId f);
 
+  // How many cells or faces a visit would look into.
+  [[nodiscard]] double work(const glm::dvec3& low, const glm::dvec3& high) const noexcept {
+    double sum = 0.0;
+    for (int level = 0; level < level_count; ++level) {
+      if (count_[level] != 0) sum += std::min(cells_of(level, low, high).count, static_cast<double>(count_[level]));
+    }
+    return sum;
+  }
+
   // Calls visit(face) for all live faces whose boxes touch this one, some of them twice; visit returns false to stop.
   template <class Visit>
   void visit(const glm::dvec3& low, const glm::dvec3& high, Visit visit) const {
     for (int level = 0; level < level_count; ++level) {
       if (count_[level] == 0) continue;
-      const double cell_m = size_of(level);
-      const glm::dvec3 from = glm::floor(low / cell_m - 0.5);
-      const glm::dvec3 to = glm::floor(high / cell_m + 0.5);
-      const glm::dvec3 cells = to - from + 1.0;
-      if (cells.x * cells.y * cells.z > count_[level]) {
+      const auto [from, to, cell_count] = cells_of(level, low, high);
+      if (cell_count > count_[level]) {
         // There are fewer faces than cells.
         for (FaceId f = first_[level]; f != none; f = links_[f].next_of_level) {
           if (touches(f, low, high) && !visit(f)) return;
@@ -59,6 +66,17 @@ class FaceIndex {
     std::uint8_t level = nowhere;
     glm::vec3 low{0.0F}, high{0.0F};
   };
+  struct Cells {
+    glm::dvec3 from, to;
+    double count;
+  };
+  // Whose faces may touch the box.
+  [[nodiscard]] static Cells cells_of(int level, const glm::dvec3& low, const glm::dvec3& high) noexcept {
+    const glm::dvec3 from = glm::floor(low / size_of(level) - 0.5);
+    const glm::dvec3 to = glm::floor(high / size_of(level) + 0.5);
+    const glm::dvec3 counts = to - from + 1.0;
+    return {from, to, counts.x * counts.y * counts.z};
+  }
   [[nodiscard]] static double size_of(int level) noexcept { return std::ldexp(1.0, 2 * level - 4); }
   [[nodiscard]] std::uint32_t bucket_of(int level, const glm::dvec3& cell) const noexcept;
   [[nodiscard]] bool touches(FaceId f, const glm::dvec3& low, const glm::dvec3& high) const noexcept {
