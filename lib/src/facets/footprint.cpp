@@ -104,6 +104,7 @@ class Raster {
         if (along.y < 0.0) left = std::max(left, x);
         if (along.y == 0.0 && along.x * (at_y - a.y) < 0.0) right = left - 1.0;
       }
+      if (left > right) continue;  // sides that hardly rise meet the row very far away
       const int first = std::max(static_cast<int>(std::ceil((left - low_.x) / cell_m_ - 0.5)), 0);
       const int end = std::min(static_cast<int>(std::floor((right - low_.x) / cell_m_ - 0.5)), nx_ - 1) + 1;
       if (first < end) count += full_before(end, y) - full_before(first, y);
