@@ -106,13 +106,14 @@ struct EdgeCollapseResult {
                                                                 const EdgeCollapseOptions& options = {},
                                                                 const Context& context = {});
 
-/// The same engine without records: the simplified mesh only.
+/// The same engine without records: the simplified mesh only. A mesh that is moved in is changed in place, which saves the
+/// memory of a copy.
 struct SimplifyResult {
   Mesh mesh;
   double error_m = 0.0;
   CollapseReport report;
 };
-[[nodiscard]] Result<SimplifyResult> simplify(const Mesh& mesh, const EdgeCollapseOptions& options,
+[[nodiscard]] Result<SimplifyResult> simplify(Mesh mesh, const EdgeCollapseOptions& options,
                                               const Context& context = {});
 
 }  // namespace lodestone

@@ -119,7 +119,7 @@ void Engine::cut_regions() {
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     Region& region = regions_[i];
     region.points = {cuts[i], cuts[i + 1]};
-    region.log.clear();
+    region.sorted = {};
     region.sorted.pass = log_count_;
     region.sorted.lane = static_cast<std::uint32_t>(i);
     region.refusals = {};
@@ -195,6 +195,7 @@ void Engine::collapse_region(Region& region, PassState& state) const {
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {region.log.key(i), i};
   radix_sort(order);
   region.sorted.assign(region.log, order);
+  region.log = {};
 }
 
 // Hands the records over, cost step by cost step through all regions; returns how many collapses there were.
@@ -233,6 +234,7 @@ bool Engine::pass(double share) {
     sum_all();
   }
   const std::uint32_t limit = estimate_all(share);
+  quadrics_ = {};  // room for the logs
   if (context_.cancelled()) return false;
   PassState state{.mesh = mesh_, .source = source_, .options = options_};
   state.diagonal_m = diagonal_m_;
@@ -246,6 +248,7 @@ bool Engine::pass(double share) {
   state.last_key.assign(mesh_.point_count(), 0);
   for_each_region([&](Region& region) {
     std::erase_if(region.edges, [limit](const Candidate& c) { return c.key >= limit; });
+    region.edges.shrink_to_fit();
     collapse_region(region, state);
   });
   if (context_.cancelled()) return false;

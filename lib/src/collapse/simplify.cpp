@@ -9,10 +9,10 @@
 namespace lodestone {
 namespace {
 
-// Applies records to a mesh instead of keeping them.
+// Applies records to the mesh they are made from. The engine may go on reading what they leave alone: materials.
 class MeshSink final : public collapse::Sink {
  public:
-  explicit MeshSink(const Mesh& source) : mesh_(source), gone_(source.triangle_count(), 0) {}
+  explicit MeshSink(Mesh& mesh) : mesh_(mesh), gone_(mesh.triangle_count(), 0) {}
 
   void record(const collapse::Edit& edit) override {
     for (const FaceId f : edit.faces) gone_[f] = 1;
@@ -23,7 +23,7 @@ class MeshSink final : public collapse::Sink {
 
   [[nodiscard]] double error_m() const noexcept { return error_m_; }
 
-  [[nodiscard]] Mesh take() {
+  void drop_gone() {
     std::size_t kept = 0;
     for (std::size_t f = 0; f < gone_.size(); ++f) {
       if (gone_[f] != 0) continue;
@@ -36,25 +36,25 @@ class MeshSink final : public collapse::Sink {
     if (!mesh_.face_materials.empty()) mesh_.face_materials.resize(kept);
     if (!mesh_.face_features.empty()) mesh_.face_features.resize(kept);
     remove_unused(mesh_);
-    return std::move(mesh_);
   }
 
  private:
-  Mesh mesh_;
+  Mesh& mesh_;
   std::vector<std::uint8_t> gone_;
   double error_m_ = 0.0;
 };
 
 }  // namespace
 
-Result<SimplifyResult> simplify(const Mesh& mesh, const EdgeCollapseOptions& options, const Context& context) {
+Result<SimplifyResult> simplify(Mesh mesh, const EdgeCollapseOptions& options, const Context& context) {
   if (Status status = collapse::check(mesh, options); !status.ok()) return status.error();
   MeshSink sink{mesh};
   SimplifyResult result;
   result.report = collapse::run(mesh, options, context, sink);
   if (context.cancelled()) return Error{ErrorCode::Cancelled, "simplification was cancelled", ""};
   result.error_m = sink.error_m();
-  result.mesh = sink.take();
+  sink.drop_gone();
+  result.mesh = std::move(mesh);
   return result;
 }
 

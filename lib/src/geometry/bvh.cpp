@@ -143,12 +143,12 @@ TriangleBvh::TriangleBvh(std::span<const glm::vec3> positions, std::span<const V
   build.nodes.reserve(count);
   build.add_node(0, count, 0);
   nodes_ = std::move(build.nodes);
-  triangles_.resize(count);
   faces_.resize(count);
+  for (std::uint32_t slot = 0; slot < count; ++slot) faces_[slot] = build.items[slot].face;
+  build.items = {};  // not beside the triangles
+  triangles_.resize(count);
   for (std::uint32_t slot = 0; slot < count; ++slot) {
-    const FaceId f = build.items[slot].face;
-    faces_[slot] = f;
-    for (std::size_t c = 0; c < 3; ++c) triangles_[slot][c] = positions[indices[3 * std::size_t{f} + c]];
+    for (std::size_t c = 0; c < 3; ++c) triangles_[slot][c] = positions[indices[3 * std::size_t{faces_[slot]} + c]];
   }
 }
 

@@ -12,7 +12,6 @@ void LevelMeasurer::find_source_borders() {
   const OutcropPyramid::LevelMesh& source = out_.meshes_.front();
   source_weld_ = weld_by_position(source.vertices.positions);
   source_borders_ = outcrop::find_borders(source.indices, source_weld_, leaf_of_face_).edges;
-  deviation_ = std::make_unique<outcrop::Deviation>(source.vertices.positions, source.indices);
 }
 
 std::vector<std::uint32_t> LevelMeasurer::tile_of_faces() const {
@@ -93,7 +92,10 @@ void LevelMeasurer::measure(const std::vector<std::uint32_t>& tile_of_cell, cons
   }
   keep_borders(weld, borders);
   deviations_.assign(level.first_face.size() - 1, {});
-  if (is_source) return;
+  if (is_source) {
+    deviation_ = std::make_unique<outcrop::Deviation>(level.vertices.positions, level.indices);
+    return;
+  }
   hold_against_source(tile_of_cell, {level.vertices.positions, level.indices, tile_of_face, weld, borders.edges},
                       context);
 }

@@ -210,7 +210,7 @@ Status OutcropBuilder::simplify_once(const Context& context) {
   collapse.target_triangles = std::max(1U, static_cast<std::uint32_t>(mesh_.triangle_count() * ratio_));
   collapse.uv_weight = 0.2;
   collapse.sharpness_power = 2.0;
-  auto simplified = simplify(mesh_, collapse, context);
+  auto simplified = simplify(std::move(mesh_), collapse, context);
   if (!simplified) return simplified.error();
   mesh_ = std::move(simplified->mesh);
   return Done{};
@@ -422,6 +422,7 @@ Result<std::shared_ptr<const OutcropPyramid>> OutcropBuilder::build() {
   out_->segments_ = segmentation_.segments;
   name_faces();
   segmentation_.faces.clear();
+  tree_.leaf_of_face = {};
   if (Status status = climb(); !status) return status.error();
   return {std::shared_ptr<const OutcropPyramid>{std::move(out_)}, std::move(warnings)};
 }
