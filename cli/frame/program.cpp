@@ -21,7 +21,8 @@ void declare_common(CLI::App& app, Common& common) {
   arguments.flag("--quiet", common.quiet, "No progress, remarks or warnings on stderr");
   arguments.flag("--strict", common.strict, "End with 3 if there were warnings");
   arguments.count("--threads", common.threads, 0, 1024, "Worker threads, 0 = one per core; does not change the result");
-  arguments.bytes("--max-memory", common.max_memory_bytes, "End with an error rather than take more memory than this");
+  arguments.bytes("--max-memory", common.max_memory_bytes,
+                  "Most memory to take; where that is too little, end with an error that says so");
 }
 
 // Memory that ran out is the one exception that leaves the library.
@@ -100,11 +101,11 @@ int run_program(const Verbs& verbs, int argc, char** argv) {
     Session session{common};
     return session.finish(Error{ErrorCode::BadArgument, std::string{fault.what()} + "; see lodestone --help", ""});
   }
-  constexpr std::uint64_t least_memory_bytes = 32'000'000;  // what the program is before it does anything
+  constexpr std::uint64_t least_memory_bytes = 40'000'000;  // what the program is before it does anything
   if (common.max_memory_bytes != 0 && common.max_memory_bytes < least_memory_bytes) {
     common.max_memory_bytes = 0;  // not even this answer could be kept to it
     Session session{common};
-    return session.finish(Error{ErrorCode::BadArgument, "--max-memory: less than 32MB cannot be kept to", ""});
+    return session.finish(Error{ErrorCode::BadArgument, "--max-memory: less than 40MB cannot be kept to", ""});
   }
   Session session{common};
   return session.finish(run_guarded(*chosen, session));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "session.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -30,13 +31,21 @@ std::uint64_t peak_rss_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// Memory beyond the limit is refused by the system, and the program ends with one line instead of swapping. The system
-// counts what is reserved, whole stacks of threads too, of which hardly a page is ever used: they come on top.
+// The last resort where a verb did not foresee what it would take: memory a fifth beyond the limit is refused by the
+// system, and the program ends with one line. The system counts what is reserved, whole stacks of threads too, of which
+// hardly a page is ever used: they come on top. Pages of the program's own files it does not count. What is freed goes
+// back at once, so that it counts no longer.
 void limit_memory(std::uint64_t bytes, unsigned threads) {
   if (bytes == 0) return;
+  constexpr std::uint64_t program_file_bytes = 35'000'000;
+  constexpr int kept_bytes = 1 << 18;
+  ::mallopt(M_ARENA_MAX, 1);
+  ::mallopt(M_MMAP_THRESHOLD, kept_bytes);
+  ::mallopt(M_TRIM_THRESHOLD, kept_bytes);
   constexpr std::uint64_t stack_bytes = 8U << 20U;
   const unsigned workers = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
-  const std::uint64_t reserved = bytes + workers * stack_bytes;
+  const std::uint64_t most = bytes + bytes / 5;
+  const std::uint64_t reserved = most - std::min(program_file_bytes, most / 2) + workers * stack_bytes;
   const rlimit limit{reserved, reserved};
   ::setrlimit(RLIMIT_DATA, &limit);
 }

@@ -85,6 +85,8 @@ void Outcrop::describe(Session& session, const TilesetReport& written) {
   report.set("encode_seconds", written.encode_seconds);
   report.set("decoded_megapixels", written.decoded_megapixels);
   report.set("encoded_megapixels", written.encoded_megapixels);
+  report.set("geometry_workers", written.geometry_workers);
+  report.set("photograph_workers", written.photograph_workers);
   std::uint32_t number = 0;
   for (const OutcropLevel& level : written.levels) {
     Report one;
@@ -125,12 +127,20 @@ std::string in_file(const std::string& where, const std::filesystem::path& file)
   return file.string() + (where.empty() ? "" : ", " + where);
 }
 
+void tell_of_fewer_workers(Session& session, const TilesetReport& written) {
+  if (!written.fewer_workers) return;
+  session.remark(
+      "to keep to --max-memory, fewer threads worked than asked for: " + std::to_string(written.geometry_workers) +
+      " on the levels, " + std::to_string(written.photograph_workers) + " on photographs");
+}
+
 Status Outcrop::run(Session& session) {
   const bool osgb = as_ == "osgb";
   if (osgb && image_ == "webp") {
     return Error{ErrorCode::BadArgument, "OpenSceneGraph does not read WebP, take --image jpeg or png", ""};
   }
   const std::filesystem::path tiles = osgb ? output_ / "3dtiles" : output_;
+  if (Status fits = outcrop_fits(input_.file(), options(), session.context()); !fits) return fits.error();
   auto loaded = input_.read(session, LoadTextures::Reference);
   if (!loaded) return loaded.error();
   auto written = write_outcrop(std::move(loaded->mesh), tiles, options(), session.context());
@@ -146,6 +156,7 @@ Status Outcrop::run(Session& session) {
   std::vector<Warning> faults;
   for (const std::string& fault : check->faults) faults.push_back({fault, output_.string()});
   session.keep(std::move(faults));
+  tell_of_fewer_workers(session, *written);
   if (osgb) {
     if (Status status = turn_into_osgb(tiles); !status) return status;
     std::error_code fault;

@@ -71,19 +71,29 @@ struct TilesetReport {
   double resample_seconds = 0.0;  ///< filling, shrinking and cutting
   double encode_seconds = 0.0;
   double geometry_seconds = 0.0;  ///< wall time of OutcropPyramid::build
+  unsigned geometry_workers = 1;
+  unsigned photograph_workers = 1;  ///< each with one photograph
+  bool fewer_workers = false;       ///< than asked for, because of the limit on memory
 };
 
 /// Writes the pyramid of a mesh whose textures are referred to by path, encoded or decoded. One photograph per worker
-/// is in memory at a time; `Context::max_memory_bytes` limits how many workers may hold one, and is exceeded, with a
-/// warning, where the triangles alone need more (OutcropPyramid::build). With `crs` known the root
+/// is in memory at a time. `Context::max_memory_bytes` is what the process may take, 47 MB for the program itself
+/// included: before work begins it is worked out from the numbers of triangles and vertices (outcrop_build_bytes()) and
+/// the heads of the images how many workers can keep to it; the report says how many do. With `crs` known the root
 /// transform places the outcrop on the globe, else it carries the origin. The same bytes come out for any number of
 /// workers. A photograph that is missing, empty, cut off or damaged is not used, nor any part of it: its faces stay
-/// plain, with a warning that names it. Errors: those of OutcropPyramid::build; Unreadable for a full disk, or a
-/// photograph that is taken away meanwhile; BadArgument where `resume` meets a folder made from another mesh, with
-/// other options or by another version. A call that fails or is cancelled leaves no half-written file and no
-/// tileset.json, and can be resumed.
+/// plain, with a warning that names it. Errors: TooLarge where not even one worker can keep to the limit, which names a
+/// limit that will do; those of OutcropPyramid::build; Unreadable for a full disk, or a photograph that is taken away
+/// meanwhile; BadArgument where `resume` meets a folder made from another mesh, with other options or by another
+/// version. A call that fails or is cancelled leaves no half-written file and no tileset.json, and can be resumed.
 [[nodiscard]] Result<TilesetReport> write_outcrop(Mesh mesh, const std::filesystem::path& folder,
                                                   const TilesetOptions& options = {}, const Context& context = {});
+
+/// The same question before a mesh is read, whose reading takes memory too: the corners of an OBJ file are counted and
+/// the heads of its images looked at; of other files only the size is known, so a limit below it and the program's is
+/// refused. Done at once where there is no limit. Errors: TooLarge, which names a limit that will do; those of reading.
+[[nodiscard]] Status outcrop_fits(const std::filesystem::path& mesh_file, const TilesetOptions& options,
+                                  const Context& context);
 
 /// What a look at all files of a tileset found. The usual validators check the JSON only.
 struct TilesetCheck {

@@ -21,6 +21,8 @@ using ByteSpan = std::span<const std::uint8_t>;
 [[nodiscard]] Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_t at_least = 0);
 // Upright, from the head of a file.
 [[nodiscard]] Result<glm::uvec2> jpeg_size(ByteSpan bytes);
+// The most bytes a pixel that decode_jpeg() holds, from the head of a file.
+[[nodiscard]] double jpeg_decode_bytes(ByteSpan bytes);
 [[nodiscard]] Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_webp(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels);

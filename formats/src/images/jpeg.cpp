@@ -23,6 +23,7 @@ using Handle = std::unique_ptr<void, Closer>;
 struct Markers {
   int orientation = 1;
   bool adobe = false;  // Adobe writes CMYK inverted: 255 is no ink
+  bool progressive = false;
 };
 
 unsigned u16(ByteSpan b, std::size_t at, bool little) {
@@ -68,6 +69,7 @@ Markers read_markers(ByteSpan bytes) {
       markers.orientation = exif_orientation(body);
     }
     if (marker == 0xEE && body.size() >= 5 && std::memcmp(body.data(), "Adobe", 5) == 0) markers.adobe = true;
+    if (marker == 0xC2 || marker == 0xC6) markers.progressive = true;
     at += 2 + length;
   }
   return markers;
@@ -152,6 +154,20 @@ Result<glm::uvec2> jpeg_size(ByteSpan bytes) {
   const auto [width, height, space] = *header;
   const bool turned = read_markers(bytes).orientation >= 5;
   return turned ? glm::uvec2{height, width} : glm::uvec2{width, height};
+}
+
+double jpeg_decode_bytes(ByteSpan bytes) {
+  const Handle handle{tjInitDecompress()};
+  const auto header = read_header(handle.get(), bytes);
+  if (!header) return 0.0;
+  const bool cmyk = header->space == TJCS_CMYK || header->space == TJCS_YCCK;
+  const double components = cmyk ? 4.0 : (header->space == TJCS_GRAY ? 1.0 : 3.0);
+  const double pixel = cmyk ? 3.0 : components;
+  const Markers markers = read_markers(bytes);
+  constexpr double coefficient = 2.0;
+  // One after the other: all coefficients of a progressive file, CMYK beside RGB, the picture beside the upright one.
+  const double decoding = components + (markers.progressive ? coefficient * components : 0.0);
+  return std::max({decoding, cmyk ? components + pixel : 0.0, markers.orientation != 1 ? 2.0 * pixel : 0.0});
 }
 
 Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {

@@ -17,44 +17,48 @@ std::uint32_t big_endian(ByteSpan bytes, std::size_t at) {
          bytes[at + 3];
 }
 
+// Decoders of other kinds may keep two copies with alpha.
+constexpr double plain_decode_bytes = 8.0;
+
 // Nothing for kinds whose header is not looked into, or if the head is too short.
-std::optional<glm::uvec2> size_from_head(ByteSpan bytes) {
+std::optional<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes) {
   const std::string type = image_mime_type(bytes);
-  constexpr std::size_t png_head = 24;
-  if (type == "image/png" && bytes.size() >= png_head) return glm::uvec2{big_endian(bytes, 16), big_endian(bytes, 20)};
+  constexpr std::size_t png_head = 26;
+  if (type == "image/png" && bytes.size() >= png_head) {
+    const bool deep = bytes[24] > 8;
+    return Photograph{{big_endian(bytes, 16), big_endian(bytes, 20), file_bytes}, deep ? plain_decode_bytes : 4.0};
+  }
   if (type != "image/jpeg") return {};
   const auto size = jpeg_size(bytes);
-  return size ? std::optional{*size} : std::nullopt;
+  if (!size) return {};
+  return Photograph{{size->x, size->y, file_bytes}, jpeg_decode_bytes(bytes)};
 }
 
-Result<glm::uvec2> size_by_decoding(ByteSpan bytes, const std::string& name) {
+Result<Photograph> by_decoding(ByteSpan bytes, const std::string& name) {
   const auto image = decode_image(bytes, name);
   if (!image) return image.error();
-  return glm::uvec2{image->width, image->height};
+  return Photograph{{image->width, image->height, bytes.size()}, plain_decode_bytes};
 }
 
-TextureInfo known(const glm::uvec2& size, std::uint64_t bytes) { return {size.x, size.y, bytes}; }
-
-Result<TextureInfo> measure(const Texture& texture) {
-  if (texture.image) return known({texture.image->width, texture.image->height}, 0);
+Result<Photograph> measure(const Texture& texture) {
+  if (texture.image) {
+    return Photograph{{texture.image->width, texture.image->height, 0}, static_cast<double>(texture.image->channels)};
+  }
   if (texture.encoded && !texture.encoded->empty()) {
-    if (const auto size = size_from_head(*texture.encoded)) return known(*size, texture.encoded->size());
-    const auto size = size_by_decoding(*texture.encoded, name_of(texture));
-    if (!size) return size.error();
-    return known(*size, texture.encoded->size());
+    const Bytes& bytes = *texture.encoded;
+    if (const auto found = from_head(bytes, bytes.size())) return *found;
+    return by_decoding(bytes, name_of(texture));
   }
   if (texture.path.empty()) return Error{ErrorCode::NotFound, "a texture has neither pixels nor a file", texture.name};
   const auto input = Input::open(texture.path, most_file_bytes);
   if (!input) return input.error();
   Bytes head(std::min<std::uint64_t>(head_bytes, input->size()));
   head.resize(input->read(0, head));
-  if (const auto size = size_from_head(head)) return known(*size, input->size());
+  if (const auto found = from_head(head, input->size())) return *found;
   const auto bytes = input->read_all();
   if (!bytes) return bytes.error();
-  if (const auto size = size_from_head(*bytes)) return known(*size, input->size());
-  const auto size = size_by_decoding(*bytes, texture.path);
-  if (!size) return size.error();
-  return known(*size, input->size());
+  if (const auto found = from_head(*bytes, input->size())) return *found;
+  return by_decoding(*bytes, texture.path);
 }
 
 }  // namespace
@@ -65,10 +69,10 @@ Warning plain_warning(const std::string& reason, const std::string& name) {
   return {"a texture cannot be used, its faces stay plain: " + reason, name};
 }
 
-TextureInfo measure_texture(const Texture& texture, std::vector<Warning>& warnings) {
-  auto info = measure(texture);
-  if (info && info->width_px > 0 && info->height_px > 0) return *info;
-  warnings.push_back(plain_warning(info ? "it has no pixels" : info.error().message, name_of(texture)));
+Photograph look_at(const Texture& texture, std::vector<Warning>& warnings) {
+  auto found = measure(texture);
+  if (found && found->info.width_px > 0 && found->info.height_px > 0) return *found;
+  warnings.push_back(plain_warning(found ? "it has no pixels" : found.error().message, name_of(texture)));
   return {};
 }
 

@@ -7,10 +7,12 @@
 #include <lodestone/formats.h>
 #include <lodestone/outcrop.h>
 
+#include "tiles3d/outcrop_memory.h"
+
 namespace lodestone {
 
 // Size 0 and a warning for a texture that is not there or is no image.
-[[nodiscard]] TextureInfo measure_texture(const Texture& texture, std::vector<Warning>& warnings);
+[[nodiscard]] Photograph look_at(const Texture& texture, std::vector<Warning>& warnings);
 
 [[nodiscard]] std::string name_of(const Texture& texture);
 

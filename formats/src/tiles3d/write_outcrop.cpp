@@ -12,6 +12,7 @@
 #include "meshes/writers.h"
 #include "tiles3d/build_record.h"
 #include "tiles3d/jobs.h"
+#include "tiles3d/outcrop_memory.h"
 #include "tiles3d/photographs.h"
 #include "tiles3d/tileset_json.h"
 
@@ -91,9 +92,10 @@ class OutcropWriter {
   void clean(const fs::path& folder, bool tiles) const;
   void leave_no_trace() const;
   void sort_tiles();
-  [[nodiscard]] unsigned photographs_at_once() const;
+  [[nodiscard]] Status plan(const Mesh& mesh);
+  [[nodiscard]] unsigned joined_at_once() const;
   [[nodiscard]] std::vector<std::uint32_t> largest_first() const;
-  [[nodiscard]] Status write_photograph(std::uint32_t segment, unsigned workers);
+  [[nodiscard]] Status write_photograph(std::uint32_t segment);
   [[nodiscard]] Result<Image> photograph_of(std::uint32_t texture);
   [[nodiscard]] Status write_joined(std::uint32_t tile);
   [[nodiscard]] Status write_tile(std::uint32_t tile, std::span<const SegmentImages* const> images);
@@ -113,7 +115,6 @@ class OutcropWriter {
   }
   [[nodiscard]] bool photograph_is_done(std::uint32_t segment) const;
   void tile_finished(bool kept);
-  void warn_of_memory(std::uint32_t vertices);
   [[nodiscard]] Status finish();
 
   fs::path folder_;
@@ -121,6 +122,7 @@ class OutcropWriter {
   const TilesetOptions& options_;
   const Context& context_;
   Context quiet_;  // cancels, but does not report: for jobs that run beside each other
+  MemoryPlan plan_;
   std::shared_ptr<const OutcropPyramid> pyramid_;
   std::vector<Texture> textures_;
   std::vector<TextureInfo> infos_;
@@ -363,7 +365,7 @@ Result<Image> OutcropWriter::photograph_of(std::uint32_t texture) {
   return white;
 }
 
-Status OutcropWriter::write_photograph(std::uint32_t segment, unsigned workers) {
+Status OutcropWriter::write_photograph(std::uint32_t segment) {
   if (photograph_is_done(segment)) {
     for (const auto& [level, tiles] : alone_[segment]) {
       for (std::size_t i = 0; i < tiles.size(); ++i) tile_finished(true);
@@ -388,7 +390,7 @@ Status OutcropWriter::write_photograph(std::uint32_t segment, unsigned workers) 
     }
     if (!here) continue;
     const SegmentImages* only[] = {&images};
-    Status status = run_jobs(tiles->second.size(), workers, quiet_, [&](std::size_t i) -> Status {
+    Status status = run_jobs(tiles->second.size(), plan_.tile_workers, quiet_, [&](std::size_t i) -> Status {
       const std::uint32_t tile = tiles->second[i];
       if (!is_done(tile_file(tile))) return write_tile(tile, only);
       tile_finished(true);
@@ -416,28 +418,24 @@ Status OutcropWriter::write_joined(std::uint32_t tile) {
   return write_tile(tile, pointers);
 }
 
-// As many as memory allows: pixels, a third of them while shrinking, the file, which pixels are used, and a tile's
-// texture plain and packed.
-unsigned OutcropWriter::photographs_at_once() const {
-  double largest = 1.0;
-  std::size_t count = 0;
-  for (const OutcropSegment& segment : pyramid_->segments()) {
-    if (segment.texture == none) continue;
-    const TextureInfo& info = infos_[segment.texture];
-    constexpr double per_pixel = 3.0 * 1.4 + 0.2;
-    constexpr double per_tile_byte = 12.0;
-    const double pixels = static_cast<double>(info.width_px) * info.height_px;
-    largest = std::max(largest, pixels * per_pixel + static_cast<double>(info.file_bytes) +
-                                    per_tile_byte * static_cast<double>(pyramid_->tile_bytes()));
-    ++count;
+// Tiles of several images load those at their level: as many at once as one photograph has room for in all.
+unsigned OutcropWriter::joined_at_once() const {
+  const unsigned workers = workers_of(context_);
+  if (context_.max_memory_bytes == 0) return workers;
+  double largest_px = 1.0;
+  for (const std::uint32_t tile : joined_) {
+    double pixels = 0.0;
+    for (const std::uint32_t s : pyramid_->tiles()[tile].segments) {
+      const glm::uvec2 size = pyramid_->image_size(s, pyramid_->tiles()[tile].level);
+      if (pyramid_->segments()[s].texture != none) pixels += static_cast<double>(size.x) * size.y;
+    }
+    largest_px = std::max(largest_px, pixels);
   }
-  auto workers = static_cast<unsigned>(std::min<std::size_t>(workers_of(context_), std::max<std::size_t>(count, 1)));
-  if (context_.max_memory_bytes > 0) {
-    const double held = static_cast<double>(pyramid_->memory_bytes()) + 64e6;
-    const double room = 0.9 * static_cast<double>(context_.max_memory_bytes) - held;
-    workers = std::min(workers, static_cast<unsigned>(std::max(1.0, room / largest)));
+  double photograph_px = 1.0;
+  for (const TextureInfo& info : infos_) {
+    photograph_px = std::max(photograph_px, static_cast<double>(info.width_px) * info.height_px);
   }
-  return workers;
+  return std::clamp(static_cast<unsigned>(plan_.photograph_workers * photograph_px / largest_px), 1U, workers);
 }
 
 // Segments with an image, so that no large one is left for the end, when other workers have nothing to do.
@@ -450,18 +448,6 @@ std::vector<std::uint32_t> OutcropWriter::largest_first() const {
   const auto pixels = [&](std::uint32_t s) { return std::uint64_t{segments[s].width_px} * segments[s].height_px; };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return pixels(a) > pixels(b); });
   return order;
-}
-
-// Photographs can wait for each other, triangles cannot.
-void OutcropWriter::warn_of_memory(std::uint32_t vertices) {
-  // Measured while levels are made: 560 up to a ratio of 0.5, 730 at 0.8; and the program itself.
-  const double bytes_of_vertex = options_.pyramid.ratio > 0.5 ? 730.0 : 560.0;
-  const double needed = bytes_of_vertex * vertices + 40e6;
-  if (context_.max_memory_bytes == 0 || needed <= static_cast<double>(context_.max_memory_bytes)) return;
-  warnings_.push_back({"its triangles alone take about " +
-                           std::to_string(static_cast<std::uint64_t>(needed / 1e6) + 1) +
-                           " MB while levels are made, more than the limit on memory",
-                       folder_.string()});
 }
 
 Status OutcropWriter::finish() {
@@ -491,8 +477,24 @@ Status OutcropWriter::finish() {
   return Done{};
 }
 
+// Sizes of all images, from their heads, and how many workers there may be.
+Status OutcropWriter::plan(const Mesh& mesh) {
+  std::vector<Photograph> photographs;
+  for (const Texture& texture : mesh.textures) {
+    photographs.push_back(look_at(texture, warnings_));
+    infos_.push_back(photographs.back().info);
+  }
+  auto plan = plan_memory(outcrop_size(mesh), photographs, options_.pyramid, context_, folder_.string());
+  if (!plan) return plan.error();
+  plan_ = *plan;
+  report_.geometry_workers = plan_.geometry_workers;
+  report_.photograph_workers = plan_.photograph_workers;
+  report_.fewer_workers = plan_.fewer;
+  return Done{};
+}
+
 Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
-  for (const Texture& texture : mesh.textures) infos_.push_back(measure_texture(texture, warnings_));
+  if (Status status = plan(mesh); !status) return status.error();
   const auto record = record_build(mesh, options_, context_);
   if (!record) return record.error();
   textures_ = mesh.textures;
@@ -500,11 +502,12 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   report_.source_triangles = mesh.triangle_count();
   report_.degenerate_triangles = degenerate_triangles(mesh);
   if (Status status = prepare_folder(*record); !status) return status.error();
-  warn_of_memory(mesh.vertex_count());
   timespec before{};
   timespec after{};
   ::clock_gettime(CLOCK_MONOTONIC, &before);
-  auto pyramid = OutcropPyramid::build(std::move(mesh), infos_, options_.pyramid, context_);
+  Context building = context_;
+  building.max_workers = plan_.geometry_workers;
+  auto pyramid = OutcropPyramid::build(std::move(mesh), infos_, options_.pyramid, building);
   ::clock_gettime(CLOCK_MONOTONIC, &after);
   if (!pyramid) {
     leave_no_trace();
@@ -515,14 +518,12 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   warnings_.insert(warnings_.end(), pyramid.warnings().begin(), pyramid.warnings().end());
   pyramid_ = std::move(*pyramid);
   sort_tiles();
-  const unsigned at_once = photographs_at_once();
-  const unsigned inner = std::max(1U, workers_of(context_) / at_once);
   const std::vector<std::uint32_t> order = largest_first();
-  Status status =
-      run_jobs(order.size(), at_once, context_, [&](std::size_t i) { return write_photograph(order[i], inner); });
+  Status status = run_jobs(order.size(), plan_.photograph_workers, context_,
+                           [&](std::size_t i) { return write_photograph(order[i]); });
   if (!status) return status.error();
   status =
-      run_jobs(joined_.size(), workers_of(context_), context_, [&](std::size_t i) { return write_joined(joined_[i]); });
+      run_jobs(joined_.size(), joined_at_once(), context_, [&](std::size_t i) { return write_joined(joined_[i]); });
   if (!status) return status.error();
   if (Status done = finish(); !done) return done.error();
   return {std::move(report_), std::move(warnings_)};

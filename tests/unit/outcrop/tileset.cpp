@@ -53,15 +53,39 @@ TEST_CASE("A tileset holds the source, fits without a seam, and passes its own c
   CHECK(!fs::exists(folder / "work"));
 }
 
-TEST_CASE("A limit on memory that the triangles alone exceed is told") {
-  const fs::path folder = scratch_folder("tileset_memory");
-  const auto tight = write_outcrop(small_cliff(), folder, options(), {.max_memory_bytes = 1'000'000});
-  REQUIRE(tight);
-  REQUIRE(tight.warnings().size() == 1);
-  CHECK(tight.warnings().front().message.find(" MB while levels are made") != std::string::npos);
-  const auto enough = write_outcrop(small_cliff(), folder, options(), {.max_memory_bytes = 100'000'000});
+TEST_CASE("A limit on memory that cannot be kept is refused before work begins, with one that can") {
+  const fs::path folder = scratch_folder("tileset_memory") / "tiles";
+  const auto limited = [&](std::size_t bytes, unsigned workers) {
+    return write_outcrop(small_cliff(), folder, options(), {.max_workers = workers, .max_memory_bytes = bytes});
+  };
+  const auto tight = limited(1'000'000, 2);
+  REQUIRE(!tight);
+  CHECK(tight.error().code == ErrorCode::TooLarge);
+  CHECK(!fs::exists(folder));
+  const std::string& said = tight.error().message;
+  const std::size_t at = said.rfind(": ");
+  REQUIRE(said.find("MB will do") != std::string::npos);
+  const std::size_t named = std::stoul(said.substr(at + 2)) * 1'000'000;
+  CHECK(limited(named - 1'000'000, 2).error().code == ErrorCode::TooLarge);
+  const auto just = limited(named, 8);
+  REQUIRE(just);
+  CHECK(just->geometry_workers == 1);
+  const auto enough = limited(1'000'000'000, 2);
   REQUIRE(enough);
-  CHECK(enough.warnings().empty());
+  CHECK(enough->geometry_workers == 2);
+  CHECK(enough->photograph_workers == 2);
+}
+
+TEST_CASE("What building takes grows with the mesh, the ratio and a second worker") {
+  const OutcropSize size{1'000'000, 500'000, 20};
+  const auto bytes = [&](double ratio, unsigned workers) {
+    return static_cast<double>(outcrop_build_bytes(size, {.ratio = ratio}, workers));
+  };
+  CHECK(bytes(0.5, 1) < bytes(0.8, 1));
+  CHECK(bytes(0.5, 1) < bytes(0.5, 2));
+  CHECK(bytes(0.5, 2) == bytes(0.5, 8));
+  CHECK(2.0 * bytes(0.5, 1) == Approx(outcrop_build_bytes({2'000'000, 1'000'000, 20}, {.ratio = 0.5}, 1)));
+  CHECK(outcrop_levels_bytes(size, {.ratio = 0.5}) < outcrop_build_bytes(size, {.ratio = 0.5}, 1));
 }
 
 TEST_CASE("The check of a tileset finds what is wrong with it") {

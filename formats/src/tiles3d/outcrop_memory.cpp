@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "tiles3d/outcrop_memory.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "meshes/obj_count.h"
+#include "tiles3d/jobs.h"
+#include "tiles3d/photographs.h"
+
+namespace lodestone {
+namespace {
+
+constexpr double program_bytes = 47e6;    // its code, that of its libraries, and what they need to run
+constexpr double per_tile_byte = 12.0;    // its texture plain and compressed
+constexpr double worker_bytes = 1e6;      // what a thread keeps for itself
+constexpr double check_triangle = 110.0;  // edges of the finest level, when the files are read back
+
+// V_t as OutcropPyramid::build() will choose it, or more.
+double expected_tile_bytes(const OutcropSize& size, std::span<const Photograph> photographs,
+                           const OutcropOptions& options) {
+  if (options.tile_bytes > 0) return static_cast<double>(options.tile_bytes);
+  double whole = 25.0 * static_cast<double>(size.triangles);
+  for (const Photograph& one : photographs) {
+    const double pixels = static_cast<double>(one.info.width_px) * one.info.height_px;
+    whole += one.info.file_bytes > 0 ? static_cast<double>(one.info.file_bytes) : 0.4 * pixels;
+  }
+  return std::clamp(whole / 64.0, 128e3, 1e6);
+}
+
+std::string megabytes(double bytes) { return std::to_string(static_cast<std::uint64_t>(std::ceil(bytes * 1e-6))); }
+
+Error too_little(const Context& context, const std::string& of_what, double needed, const std::string& where) {
+  return {ErrorCode::TooLarge,
+          "a limit of " + megabytes(static_cast<double>(context.max_memory_bytes)) +
+              " MB on memory is too little for " + of_what + ": " + megabytes(needed) + "MB will do",
+          where};
+}
+
+// From its file to its last level image: compressed, decoded, filled, shrunk.
+double photograph_bytes(const Photograph& photograph, const OutcropOptions& options) {
+  const double pixels = static_cast<double>(photograph.info.width_px) * photograph.info.height_px;
+  constexpr double channels = 3.0;  // most of what has four is no photograph; its decoder says so
+  const double colors = std::max(channels, std::min(4.0, photograph.decode_bytes));
+  constexpr double fill_levels = 1.5;  // coarser ones with their weights, and which pixels are known
+  // Levels are let go once one that is half as wide is there.
+  const double ratio = options.texture_ratio > 0.0 ? options.texture_ratio : options.ratio > 0.0 ? options.ratio : 0.5;
+  double levels = 1.0;
+  double width = 1.0;
+  do {
+    width *= ratio;
+    levels += width * width;
+  } while (width > 1.0 / 1.9);
+  const double file = static_cast<double>(photograph.info.file_bytes);
+  const double most =
+      std::max(photograph.decode_bytes * pixels + file, std::max(colors + fill_levels, colors * levels + 0.2) * pixels);
+  return most + worker_bytes;
+}
+
+}  // namespace
+
+Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photograph> photographs,
+                               const OutcropOptions& options, const Context& context, const std::string& where) {
+  const unsigned workers = workers_of(context);
+  if (context.max_memory_bytes == 0) {
+    const auto images = static_cast<unsigned>(std::clamp<std::size_t>(photographs.size(), 1, workers));
+    return MemoryPlan{workers, images, workers / images};
+  }
+  const auto limit = static_cast<double>(context.max_memory_bytes);
+  const double tile = per_tile_byte * expected_tile_bytes(size, photographs, options);
+  double photograph = worker_bytes;
+  for (const Photograph& one : photographs) photograph = std::max(photograph, photograph_bytes(one, options));
+  const double largest = photograph + tile;
+  const double kept = program_bytes + static_cast<double>(outcrop_levels_bytes(size, options));
+  const double building = program_bytes + static_cast<double>(outcrop_build_bytes(size, options, 1));
+  const double checking = program_bytes + check_triangle * static_cast<double>(size.triangles);
+  const double needed = std::max({building, checking, kept + largest});
+  if (needed > limit) {
+    std::string of_what = std::to_string(size.triangles) + " triangles";
+    if (kept + largest >= needed) of_what += " and one photograph of the largest";
+    return too_little(context, of_what, needed, where);
+  }
+  MemoryPlan plan;
+  const double side_by_side = program_bytes + worker_bytes * workers +
+                              static_cast<double>(outcrop_build_bytes(size, options, std::max(2U, workers)));
+  plan.geometry_workers = side_by_side <= limit ? workers : 1U;
+  const double room = limit - kept;
+  const auto count = static_cast<double>(std::max<std::size_t>(photographs.size(), 1));
+  plan.photograph_workers = static_cast<unsigned>(std::min({room / largest, count, static_cast<double>(workers)}));
+  const double room_of_each = room / plan.photograph_workers - photograph;
+  plan.tile_workers = static_cast<unsigned>(
+      std::clamp(room_of_each / tile, 1.0, static_cast<double>(std::max(1U, workers / plan.photograph_workers))));
+  plan.fewer = plan.geometry_workers < workers || plan.tile_workers < workers / plan.photograph_workers ||
+               plan.photograph_workers < std::min<std::size_t>(workers, photographs.size());
+  return plan;
+}
+
+Status outcrop_fits(const std::filesystem::path& mesh_file, const TilesetOptions& options, const Context& context) {
+  if (context.max_memory_bytes == 0) return Done{};
+  const ReadOptions reading;
+  const auto input = Input::open(mesh_file, reading.max_file_bytes);
+  if (!input) return input.error();
+  if (input->extension() != ".obj") {
+    // What reading takes at least; and what is enough for whatever it may hold.
+    constexpr double most_growth = 12.0;
+    const auto bytes = static_cast<double>(input->size());
+    if (program_bytes + bytes <= static_cast<double>(context.max_memory_bytes)) return Done{};
+    return too_little(context, "a file of " + megabytes(bytes) + " MB", program_bytes + most_growth * bytes,
+                      mesh_file.string());
+  }
+  const auto count = count_obj(*input, context);
+  if (!count) return count.error();
+  std::vector<Photograph> photographs;
+  std::vector<Warning> told_when_used;
+  for (const std::filesystem::path& file : count->textures) {
+    photographs.push_back(look_at({.name = file.string(), .path = file.string()}, told_when_used));
+  }
+  const OutcropSize size{count->triangles, count->vertices, count->vertex_bytes};
+  const auto plan = plan_memory(size, photographs, options.pyramid, context, mesh_file.string());
+  if (!plan) return plan.error();
+  return Done{};
+}
+
+}  // namespace lodestone
