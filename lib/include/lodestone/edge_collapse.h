@@ -106,8 +106,8 @@ struct EdgeCollapseResult {
                                                                 const EdgeCollapseOptions& options = {},
                                                                 const Context& context = {});
 
-/// The same engine without records: the simplified mesh only. A mesh that is moved in is changed in place, which saves the
-/// memory of a copy.
+/// The same engine without records: the simplified mesh only. A mesh that is moved in is changed in place, which saves
+/// the memory of a copy.
 struct SimplifyResult {
   Mesh mesh;
   double error_m = 0.0;

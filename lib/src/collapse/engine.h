@@ -41,8 +41,8 @@ struct Start {
   Scruples scruples = Scruples::UntilStuck;  // None: as if it were soup
 };
 
-// Precondition: check() is ok. The sink may change positions, looks and indices of the source meanwhile, but no material.
-// Stops early, without a report, when the context is cancelled.
+// Precondition: check() is ok. The sink may change positions, looks and indices of the source meanwhile, but no
+// material. Stops early, without a report, when the context is cancelled.
 CollapseReport run(const Mesh& source, const EdgeCollapseOptions& options, const Context& context, Sink& sink,
                    const Start& start = {});
 
