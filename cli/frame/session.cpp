@@ -2,6 +2,7 @@
 #include "session.h"
 
 #include <malloc.h>
+#include <pthread.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -42,10 +43,18 @@ void limit_memory(std::uint64_t bytes, unsigned threads) {
   ::mallopt(M_ARENA_MAX, 1);
   ::mallopt(M_MMAP_THRESHOLD, kept_bytes);
   ::mallopt(M_TRIM_THRESHOLD, kept_bytes);
-  constexpr std::uint64_t stack_bytes = 8U << 20U;
+  constexpr std::uint64_t own_stack_bytes = 2U << 20U;
+  constexpr std::uint64_t scheduler_stack_bytes = 4U << 20U;  // oneTBB's choice
+  pthread_attr_t attributes;
+  if (::pthread_getattr_default_np(&attributes) == 0) {
+    ::pthread_attr_setstacksize(&attributes, own_stack_bytes);
+    ::pthread_setattr_default_np(&attributes);
+    ::pthread_attr_destroy(&attributes);
+  }
   const unsigned workers = threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
   const std::uint64_t most = bytes + bytes / 5;
-  const std::uint64_t reserved = most - std::min(program_file_bytes, most / 2) + workers * stack_bytes;
+  const std::uint64_t reserved =
+      most - std::min(program_file_bytes, most / 2) + workers * (own_stack_bytes + scheduler_stack_bytes);
   const rlimit limit{reserved, reserved};
   ::setrlimit(RLIMIT_DATA, &limit);
 }
