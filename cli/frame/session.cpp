@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <thread>
 
 #include "version.h"
@@ -26,7 +27,13 @@ double seconds_since_start() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - program_start).count();
 }
 
+// Of this program alone: getrusage() begins with what the process was before it became this program.
 std::uint64_t peak_rss_bytes() {
+  std::ifstream status{"/proc/self/status"};
+  for (std::string word; status >> word;) {
+    std::uint64_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+  }
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
