@@ -77,6 +77,7 @@ int load(const char* file, const char* folder) {
   if (!pyramid) return 2;
   const Box& box = (*pyramid)->bounds();
   std::vector<render::Picture> tiled;
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   render::RenderOptions options{.width_px = 1280, .height_px = 720, .supersample = 1};
   options.look.lighting = render::Lighting::Photograph;
   const auto place = [&](int step) {
@@ -87,20 +88,27 @@ int load(const char* file, const char* folder) {
     place(step);
     auto picture = render::render_tiles(*pyramid, options);
     if (!picture) return 2;
-    std::printf("{\"distance\": %d, \"tiles\": %u, \"triangles\": %u, \"frame_seconds\": %.4f}\n", step, picture->tiles,
-                picture->triangles, picture->frame_seconds);
+    std::printf(
+        "{\"distance\": %d, \"tiles\": %u, \"triangles\": %u, \"frame_seconds\": %.4f, \"frame_processor_seconds\": "
+        "%.4f}\n",
+        step, picture->tiles, picture->triangles, picture->frame_seconds, picture->frame_processor_seconds);
     tiled.push_back(std::move(*picture));
   }
   std::printf("{\"peak_megabytes\": %.0f}\n", peak_mb());
   const double start = wall_seconds();
+  const double before = processor_seconds();
   const Mesh mesh = read(file, LoadTextures::Decoded);
-  std::printf("{\"monolith_load_seconds\": %.2f}\n", wall_seconds() - start);
+  std::printf("{\"monolith_load_seconds\": %.2f, \"monolith_load_processor_seconds\": %.2f}\n", wall_seconds() - start,
+              processor_seconds() - before);
   for (int step = 1; step <= 10; ++step) {
     place(step);
     const auto picture = render::render_mesh(mesh, options);
     if (!picture) return 2;
-    std::printf("{\"distance\": %d, \"monolith_frame_seconds\": %.4f, \"picture_rms\": %.2f}\n", step,
-                picture->frame_seconds, image_rms(picture->image, tiled[static_cast<std::size_t>(step - 1)].image));
+    std::printf(
+        "{\"distance\": %d, \"monolith_frame_seconds\": %.4f, \"monolith_frame_processor_seconds\": %.4f, "
+        "\"picture_rms\": %.2f}\n",
+        step, picture->frame_seconds, picture->frame_processor_seconds,
+        image_rms(picture->image, tiled[static_cast<std::size_t>(step - 1)].image));
   }
   std::printf("{\"peak_megabytes\": %.0f}\n", peak_mb());
   return 0;

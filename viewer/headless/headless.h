@@ -49,8 +49,9 @@ struct RenderOptions {
 struct Picture {
   Image image;  ///< RGB
   std::uint32_t triangles = 0;
-  double frame_seconds = 0.0;  ///< one frame, drawn again after a first one: without uploads and reading back
-  std::uint32_t tiles = 0;     ///< of a tileset
+  double frame_seconds = 0.0;            ///< one frame, drawn again after a first one: without uploads and reading back
+  double frame_processor_seconds = 0.0;  ///< the same, of all threads together
+  std::uint32_t tiles = 0;               ///< of a tileset
 };
 
 /// Errors: BadArgument for a picture size or angle out of range, Unsupported where OSMesa is missing or too old.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <ctime>
 
 #include "stage.h"
 
@@ -26,9 +27,11 @@ Result<Picture> picture_of(const DrawArrays& arrays, const DrawArrays& finest, c
   // Twice: the first frame compiles shaders and uploads.
   for (int pass = 0; pass < 2; ++pass) {
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t processor = std::clock();
     on.renderer().draw(*frame, *view, bounds, {&item, 1}, options.look);
     on.gl().finish();
     picture.frame_seconds = seconds_since(start);
+    picture.frame_processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
   }
   picture.image = on.presenter().read(*frame);
   return {std::move(picture), surfaces.warnings()};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <ctime>
 
 #include "../render/tile_scene.h"
 #include "stage.h"
@@ -27,9 +28,11 @@ Result<Picture> render_tiles(std::shared_ptr<const TilePyramid> pyramid, const R
   picture.tiles = static_cast<std::uint32_t>(scene.items().size());
   for (int pass = 0; pass < 2; ++pass) {  // the first compiles shaders
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t processor = std::clock();
     on.renderer().draw(*frame, *view, pyramid->bounds(), scene.items(), seen.look);
     on.gl().finish();
     picture.frame_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    picture.frame_processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
   }
   picture.image = on.presenter().read(*frame);
   std::vector<Warning> failures;
