@@ -22,6 +22,7 @@ namespace lodestone::facets {
 namespace {
 
 constexpr std::uint32_t most_corners = 8;
+constexpr double least_step_gain = 0.9;     // of the error of the prism: with no less a step is not worth its faces
 constexpr double under_roof_m = 0.3;        // a roof may lie so far below the top of the block
 constexpr double most_street_share = 0.03;  // of the faces, for several prisms: a house and its shed become one
 constexpr std::uint32_t samples = 8192;     // of either surface, beside the corners
@@ -110,13 +111,43 @@ Block::Block(const FacetMesh& mesh) : houses_(tell_houses(mesh)) {
     houses_ = {1, std::vector<std::uint32_t>(mesh.faces.size(), 0)};
     corners_.clear();
     triangles_.clear();
-    const Footprint footprint = find_footprint(*mesh.source, mesh.surfaces, most_corners);
-    sentence_ = footprint.sentence;
+    footprint_ = find_footprint(*mesh.source, mesh.surfaces, most_corners);
+    sentence_ = footprint_.sentence;
     if (!sentence_.empty()) return;
-    add_prism(footprint, 0);
+    add_prism(footprint_, 0);
+    lowest_roof_m_ = footprint_.high_m;
   }
   measure(mesh);
   choose_materials(mesh);
+}
+
+Block::Block(const FacetMesh& mesh, const Block& prism) : houses_{1, {}} {
+  if (!prism.exists() || prism.houses_.count > 1) return;
+  const auto shape = find_step(*mesh.source, mesh.surfaces, prism.footprint_);
+  if (!shape) return;
+  houses_ = prism.houses_;
+  add_stepped(*shape);
+  measure(mesh);
+  if (error_m_ > least_step_gain * prism.error_m_) triangles_.clear();
+  if (exists()) choose_materials(mesh);
+}
+
+void Block::add_stepped(const SteppedShape& shape) {
+  for (const glm::dvec3& c : shape.corners) corners_.emplace_back(c);
+  lowest_roof_m_ = std::numeric_limits<double>::infinity();
+  std::uint32_t sides = 2;
+  for (const SteppedFacet& facet : shape.facets) {
+    std::vector<glm::dvec3> points;
+    for (const std::uint32_t c : facet.corners) points.push_back(shape.corners[c]);
+    const bool bottom = facet.kind == SteppedFacet::Kind::Bottom;
+    const bool top = facet.kind == SteppedFacet::Kind::Top;
+    if (top) lowest_roof_m_ = std::min(lowest_roof_m_, points.front().z);
+    const std::uint32_t name = bottom ? 0 : top ? 1 : sides++;
+    for (const auto& t : triangulate_polygon(points, facet.loop_ends)) {
+      const std::array<std::uint32_t, 3> c{facet.corners[t[0]], facet.corners[t[1]], facet.corners[t[2]]};
+      triangles_.push_back({bottom ? std::array{c[0], c[2], c[1]} : c, name, 0});
+    }
+  }
 }
 
 void Block::add_prism(const Footprint& footprint, std::uint32_t house) {
@@ -162,8 +193,8 @@ void Block::choose_materials(const FacetMesh& mesh) {
     const double area = glm::length(mesh.area_vector(face)) * see_through(*mesh.source, material);
     if (face.normal.z < 1.0 - facing_cosine) {
       walls[material] += area * (1.0 - std::abs(face.normal.z));
-    } else if (houses_.count > 1 || highest_m(mesh, face) > corners_.back().z - under_roof_m) {
-      // Floors and the ground are no roof. One house's top is the last of its corners.
+    } else if (houses_.count > 1 || highest_m(mesh, face) > lowest_roof_m_ - under_roof_m) {
+      // Floors and the ground are no roof.
       roofs[material] += area;
     }
   }
@@ -397,6 +428,9 @@ bool Block::apply(FacetMesh& mesh, progressive::EditLog& log) const {
   // Nothing else is left, so that any points may become the corners.
   std::copy(corners_.begin(), corners_.end(), mesh.place.begin());
   facets::apply(mesh, patch, error_m_, log);
+  for (const Redrawn& r : patch.redrawn) {
+    mesh.faces[r.face].normal = glm::normalize(mesh.area_vector(mesh.faces[r.face]));
+  }
   return true;
 }
 

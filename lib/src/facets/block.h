@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The last level of a building: a closed prism over its footprint; of a street, one for each house.
+// The last level of a building: a closed prism over its footprint; of a street, one for each house. And what comes
+// before it where a house has two heights.
 #pragma once
 
 #include <optional>
@@ -9,6 +10,7 @@
 #include "facets/footprint.h"
 #include "facets/houses.h"
 #include "facets/patch.h"
+#include "facets/stepped.h"
 
 namespace lodestone::facets {
 
@@ -16,6 +18,8 @@ class Block {
  public:
   // Precondition: nothing has changed in the mesh yet, the error is that from the source. O(faces).
   explicit Block(const FacetMesh& mesh);
+  // The same with a step in its roof, to come before it: of one house with two heights. Does not exist otherwise.
+  Block(const FacetMesh& mesh, const Block& prism);
 
   [[nodiscard]] bool exists() const noexcept { return !triangles_.empty(); }
   [[nodiscard]] std::uint32_t face_count() const noexcept { return static_cast<std::uint32_t>(triangles_.size()); }
@@ -39,10 +43,13 @@ class Block {
   };
   class Caster;
   void add_prism(const Footprint& footprint, std::uint32_t house);
+  void add_stepped(const SteppedShape& shape);
   void measure(const FacetMesh& mesh);
   void choose_materials(const FacetMesh& mesh);
 
   Houses houses_;
+  Footprint footprint_;         // of one house
+  double lowest_roof_m_ = 0.0;  // of one house
   std::vector<glm::vec3> corners_;
   std::vector<Triangle> triangles_;
   // What walls, and what roofs are made of to a good part, and how many faces of that must be left.

@@ -54,10 +54,12 @@ class Builder {
         log_(progressive::value_words(source.vertices)),
         mesh_(make_facet_mesh(source, options, degenerate_)),
         moved_(mesh_),
-        slides_(mesh_),
+        pieces_(mesh_),
+        slides_(mesh_, pieces_),
         planner_(mesh_),
-        parts_(mesh_),
+        parts_(mesh_, pieces_),
         block_(mesh_),
+        stepped_(mesh_, block_),
         crossings_(mesh_, parts_),
         kinds_(mesh_),
         offered_(mesh_.point_count(), 0) {}
@@ -100,10 +102,11 @@ class Builder {
   bool offer_later();
   [[nodiscard]] bool cuts_through();
   [[nodiscard]] bool takes_of_the_block(const Move& move) const;
-  bool become_block();
+  [[nodiscard]] const Block& next_block() const { return stepped_.exists() ? stepped_ : block_; }
+  bool become(const Block& block);
   [[nodiscard]] std::string why_no_block() const;
   [[nodiscard]] bool done() const {
-    return mesh_.live_faces <= options_.target_triangles || block_due_ || block_.must_come(mesh_) ||
+    return mesh_.live_faces <= options_.target_triangles || block_due_ || next_block().must_come(mesh_) ||
            context_.cancelled() || hands_over();
   }
   // A closed model would come to cross itself: there the loop goes on to the end.
@@ -119,10 +122,12 @@ class Builder {
   std::vector<FaceId> degenerate_;
   FacetMesh mesh_;
   Moved moved_;
+  Pieces pieces_;
   SlideJudge slides_;
   Planner planner_;
   PartFinder parts_;
   Block block_;
+  Block stepped_;  // comes before it, if it exists
   bool closed_ = true;
   bool block_due_ = false;  // the next slide would take a face that it needs
   CrossingFinder crossings_;
@@ -391,7 +396,7 @@ void Builder::vanish_parts(double price) {
   for (const Part& part : parts_.find(limit, price)) {
     if (done()) break;
     if (part.error_m > options_.max_error_m) continue;
-    if (mesh_.live_faces - part.faces.size() <= block_.face_count()) continue;
+    if (mesh_.live_faces - part.faces.size() <= next_block().face_count()) continue;
     const bool holds = std::any_of(part.faces.begin(), part.faces.end(), [&](FaceId f) {
       const auto& p = mesh_.faces[f].point;
       return leant_upon[p[0]] != 0 || leant_upon[p[1]] != 0 || leant_upon[p[2]] != 0;
@@ -403,6 +408,7 @@ void Builder::vanish_parts(double price) {
       leant_upon[p] = 1;
       mesh_.deviation_m[p] = std::max(mesh_.deviation_m[p], static_cast<float>(part.error_m));
     }
+    pieces_.hand_on(part.faces, part.support);
     report_.parts_sunk += sink(mesh_, part, log_) ? 1 : 0;
     ++report_.parts_vanished;
   }
@@ -440,15 +446,13 @@ bool Builder::takes_of_the_block(const Move& move) const {
     const auto& p = mesh_.faces[f].point;
     return std::find(p.begin(), p.end(), move.onto) != p.end();
   });
-  return block_.needs(mesh_, gone);
+  return next_block().needs(mesh_, gone);
 }
 
-bool Builder::become_block() {
-  const std::uint32_t faces = block_.face_count();
-  if (!block_.exists() || mesh_.live_faces <= std::max(faces, options_.target_triangles)) return false;
-  if (block_.error_m() > options_.max_error_m || context_.cancelled()) return false;
-  report_.reached_block = block_.apply(mesh_, log_);
-  return report_.reached_block;
+bool Builder::become(const Block& block) {
+  if (!block.exists() || mesh_.live_faces <= std::max(block.face_count(), options_.target_triangles)) return false;
+  if (block.error_m() > options_.max_error_m || context_.cancelled()) return false;
+  return block.apply(mesh_, log_);
 }
 
 std::string Builder::why_no_block() const {
@@ -464,7 +468,7 @@ void Builder::collapse_rest() {
   for (std::uint32_t p = 0; p < mesh_.point_count(); ++p) {
     if (!mesh_.faces_of[p].empty()) error_m = std::max(error_m, mesh_.deviation_m[p]);
   }
-  report_.last_collapses = collapse_the_rest(mesh_, options_, block_, error_m, context_, log_);
+  report_.last_collapses = collapse_the_rest(mesh_, options_, next_block(), error_m, context_, log_);
 }
 
 progressive::EditLog Builder::run(FacetShiftReport& report) {
@@ -486,6 +490,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   const double last_price = last_share * area * diagonal * diagonal;
   for (double price = first_price; price <= last_price && !done(); price *= price_step) {
     bool any = true;
+    pieces_.weigh();
     for (const auto& [point, onto] : refused_) later_.push_back(point);
     refused_.clear();
     // Before points slide: a window goes whole, or its outline frays.
@@ -503,7 +508,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
                     1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
   }
   if (hands_over()) collapse_rest();
-  if (!report_.reached_block) report_.reached_block = become_block() || is_block(mesh_);
+  become(stepped_);
+  report_.reached_block = become(block_) || is_block(mesh_);
   if (!report_.reached_block) report_.block_sentence = why_no_block();
   if (mesh_.live_faces > options_.target_triangles && options_.target_triangles != 0) {
     report_.sentence = "nothing more can go without tearing the block";

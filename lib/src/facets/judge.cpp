@@ -112,8 +112,10 @@ void SlideJudge::look_at(std::uint32_t point) {
   faces_.clear();
   spokes_.clear();
   outlines_.clear();
+  ratio_ = 1.0;
   for (const FaceId f : mesh_.faces_of[point]) {
     const Face& face = mesh_.faces[f];
+    ratio_ = std::max(ratio_, pieces_.ratio(f));
     const auto& p = face.point;
     const std::size_t k = p[0] == point ? 0 : p[1] == point ? 1 : 2;
     SlidingFace s;
@@ -288,6 +290,7 @@ Verdict SlideJudge::judge(std::uint32_t onto, double most_cost) {
   verdict.cost += 0.5 * mesh_.looks.cost_of_hole(changed_m2);
   if (verdict.cost > most_cost) return verdict;
   if (lines_) judge_lines(onto, verdict);
+  verdict.cost *= ratio_;
   verdict.error_m = std::hypot(verdict.error_m, deviation_m);
   verdict.allowed = verdict.faces_gone != 0 && verdict.cost <= most_cost && link_holds(onto);
   return verdict;

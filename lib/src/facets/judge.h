@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "facets/facet_mesh.h"
+#include "facets/pieces.h"
 
 namespace lodestone::facets {
 
@@ -23,7 +24,7 @@ struct Verdict {
 // Judges slides of a point onto its neighbours. Looks at borders and at the outlines of materials as well.
 class SlideJudge {
  public:
-  explicit SlideJudge(const FacetMesh& mesh) : mesh_(mesh) {}
+  SlideJudge(const FacetMesh& mesh, const Pieces& pieces) : mesh_(mesh), pieces_(pieces) {}
 
   // An edge at the point.
   struct Spoke {
@@ -63,6 +64,8 @@ class SlideJudge {
   [[nodiscard]] bool link_holds(std::uint32_t v);
 
   const FacetMesh& mesh_;
+  const Pieces& pieces_;
+  double ratio_ = 1.0;  // of the piece around the point
   std::uint32_t point_ = none;
   glm::dvec3 from_{0.0};
   std::vector<SlidingFace> faces_;

@@ -374,7 +374,7 @@ std::optional<OpeningJob> Openings::recess(const Opening& opening, const glm::dv
     least = away;
     depth_m = own_m;
   }
-  if (depth_m < least_depth_m) return std::nullopt;
+  if (std::abs(depth_m) < least_depth_m) return std::nullopt;
   auto job = pane_of(opening, normal, inside, depth_m, price, least_key);
   if (job) job->kind = OpeningJob::Kind::Recess;
   return job;

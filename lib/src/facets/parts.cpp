@@ -19,8 +19,8 @@ constexpr double look_ahead = 4096.0;  // times the price: so far costs are foun
 
 }  // namespace
 
-PartFinder::PartFinder(const FacetMesh& mesh)
-    : mesh_(mesh), around_(mesh), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
+PartFinder::PartFinder(const FacetMesh& mesh, const Pieces& pieces)
+    : mesh_(mesh), pieces_(pieces), around_(mesh), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
   corners_.resize(mesh.point_count());
   middles_.resize(std::bit_ceil(mesh.point_count() / 2 + 1));
   measured_.resize(mesh.point_count(), 0);
@@ -159,6 +159,18 @@ double PartFinder::cost_of(const Face& face, Look look, double limit_m, double m
   return area_m2 * sum / 6.0;
 }
 
+// How much more it stands for than there is of it.
+double PartFinder::eroded() const {
+  double whole_m2 = 0.0;
+  double left_m2 = 0.0;
+  for (const FaceId f : part_.faces) {
+    const double area_m2 = 0.5 * glm::length(mesh_.area_vector(mesh_.faces[f]));
+    left_m2 += area_m2;
+    whole_m2 += area_m2 * pieces_.ratio(f);
+  }
+  return left_m2 > 0.0 ? whole_m2 / left_m2 : 1.0;
+}
+
 // Its broad side shows what it lies upon instead.
 double PartFinder::look_lost() const {
   const auto area = [&](FaceId f) { return 0.5 * glm::length(mesh_.area_vector(mesh_.faces[f])); };
@@ -211,7 +223,7 @@ bool PartFinder::measure(double limit_m, double price, Known& known) {
       return false;
     }
   }
-  part_.cost += look_lost();
+  part_.cost = part_.cost * eroded() + look_lost();
   known.key = part_.cost / count;
   std::sort(part_.support.begin(), part_.support.end());
   part_.support.erase(std::unique(part_.support.begin(), part_.support.end()), part_.support.end());

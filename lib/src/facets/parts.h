@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "facets/facet_mesh.h"
+#include "facets/pieces.h"
 #include "facets/surroundings.h"
 
 namespace lodestone::facets {
@@ -26,7 +27,7 @@ std::uint32_t split_by_points(const FacetMesh& mesh, std::vector<std::uint32_t>&
 // measured again before the price is near.
 class PartFinder {
  public:
-  explicit PartFinder(const FacetMesh& mesh);
+  PartFinder(const FacetMesh& mesh, const Pieces& pieces);
 
   // To be called when faces may have been sewn to other parts.
   void split();
@@ -64,11 +65,13 @@ class PartFinder {
     double distance_m = 0.0;
   };
   [[nodiscard]] double sample(const glm::dvec3& p, std::uint32_t version, double limit_m, Sample& known);
+  [[nodiscard]] double eroded() const;
   [[nodiscard]] double look_lost() const;
   [[nodiscard]] std::uint64_t support_state(const Part& part) const;
   [[nodiscard]] bool closes_opening(double limit_m) const;
 
   const FacetMesh& mesh_;
+  const Pieces& pieces_;
   Surroundings around_;
   std::vector<std::uint32_t> part_of_;      // per face
   std::vector<std::vector<FaceId>> parts_;  // faces, ascending
