@@ -26,7 +26,9 @@ std::optional<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes) {
   constexpr std::size_t png_head = 26;
   if (type == "image/png" && bytes.size() >= png_head) {
     const bool deep = bytes[24] > 8;
-    return Photograph{{big_endian(bytes, 16), big_endian(bytes, 20), file_bytes}, deep ? plain_decode_bytes : 4.0};
+    const bool plain_rgb = bytes[25] == 2;
+    const double pixel = deep ? plain_decode_bytes : plain_rgb ? 3.0 : 4.0;
+    return Photograph{{big_endian(bytes, 16), big_endian(bytes, 20), file_bytes}, pixel};
   }
   if (type != "image/jpeg") return {};
   const auto size = jpeg_size(bytes);
