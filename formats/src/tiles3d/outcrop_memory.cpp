@@ -43,14 +43,10 @@ double photograph_bytes(const Photograph& photograph, const OutcropOptions& opti
   constexpr double channels = 3.0;  // most of what has four is no photograph; its decoder says so
   const double colors = std::max(channels, std::min(4.0, photograph.decode_bytes));
   constexpr double fill_levels = 1.5;  // coarser ones with their weights, and which pixels are known
-  // Levels are let go once one that is half as wide is there.
+  // All levels down to one that is half as wide are made of the photograph, the largest of them in its memory.
   const double ratio = options.texture_ratio > 0.0 ? options.texture_ratio : options.ratio > 0.0 ? options.ratio : 0.5;
   double levels = 1.0;
-  double width = 1.0;
-  do {
-    width *= ratio;
-    levels += width * width;
-  } while (width > 1.0 / 1.9);
+  for (double width = ratio; width > 1.0 / 1.9; width *= ratio) levels += width * ratio * width * ratio;
   const double file = static_cast<double>(photograph.info.file_bytes);
   const double most =
       std::max(photograph.decode_bytes * pixels + file, std::max(colors + fill_levels, colors * levels + 0.2) * pixels);

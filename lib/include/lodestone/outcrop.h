@@ -229,16 +229,16 @@ class SegmentImages {
   void go_to(const OutcropPyramid& pyramid, std::uint32_t level);
 
   [[nodiscard]] std::uint32_t segment() const noexcept { return segment_; }
-  [[nodiscard]] std::uint32_t level() const noexcept {
-    return first_level_ + static_cast<std::uint32_t>(images_.size()) - 1;
-  }
+  [[nodiscard]] std::uint32_t level() const noexcept { return level_; }
   /// That of level().
-  [[nodiscard]] const Image& image() const noexcept { return images_.back(); }
+  [[nodiscard]] const Image& image() const noexcept { return images_.front(); }
 
  private:
+  void coarsen(const OutcropPyramid& pyramid);
+
   std::uint32_t segment_ = 0;
-  std::uint32_t first_level_ = 0;
-  std::vector<Image> images_;  // those that coarser levels may be made from, and the present one
+  std::uint32_t level_ = 0;
+  std::vector<Image> images_;  // the present level, and coarser ones that had to be made of finer ones than it
 };
 
 /// The pixels of a tile's texture. `images` holds every segment that its pieces name, at the texture's level. What

@@ -99,33 +99,30 @@ FilterRow filter_of(std::uint32_t channels) {
   return filters[channels - 1];
 }
 
-void store_row(const std::vector<float>& sums, Image& out, std::uint32_t y) {
+// Writes one row of `width` pixels.
+void store_row(const std::vector<float>& sums, std::uint32_t channels, std::uint32_t width, std::uint8_t* to) {
   const LightTables& light = tables();
-  const std::uint32_t channels = out.channels;
   const bool has_alpha = channels == 2 || channels == 4;
   const std::uint32_t colors = has_alpha ? channels - 1 : channels;
   const float* sum = sums.data();
-  std::uint8_t* to = out.at(0, y);
-  for (std::uint32_t x = 0; x < out.width; ++x, sum += channels, to += channels) {
+  for (std::uint32_t x = 0; x < width; ++x, sum += channels, to += channels) {
     const float alpha = has_alpha ? sum[colors] : 1.0F;
     for (std::uint32_t c = 0; c < colors; ++c) to[c] = light.byte_of(alpha > 0.0F ? sum[c] / alpha : 0.0F);
     if (has_alpha) to[colors] = static_cast<std::uint8_t>(std::lround(std::clamp(alpha, 0.0F, 1.0F) * 255.0F));
   }
 }
 
-}  // namespace
-
-Image shrink(const Image& source, std::uint32_t width, std::uint32_t height) {
+// Row by row into `to`, which may be the source's own memory: a row of the result ends before the first row of the
+// source that the rows after it are made of, but for one that is shared, and that is kept in `row`.
+void shrink_rows(const Image& source, std::uint32_t width, std::uint32_t height, std::uint8_t* to) {
   assert(width >= 1 && height >= 1 && width <= source.width && height <= source.height);
-  Image out{width, height, source.channels, {}};
-  out.pixels.resize(static_cast<std::size_t>(width) * height * source.channels);
   const Footprints across = footprints(source.width, width);
   const Footprints down = footprints(source.height, height);
   std::vector<float> sums(static_cast<std::size_t>(width) * source.channels);
   std::vector<float> row(sums.size());
   const FilterRow filter = filter_of(source.channels);
   std::uint32_t filtered = none;  // the source row in `row`: one that two pixels share is filtered once
-  for (std::uint32_t y = 0; y < height; ++y) {
+  for (std::uint32_t y = 0; y < height; ++y, to += sums.size()) {
     std::fill(sums.begin(), sums.end(), 0.0F);
     const Footprint& print = down.of[y];
     for (std::uint32_t i = 0; i < print.count; ++i) {
@@ -134,9 +131,25 @@ Image shrink(const Image& source, std::uint32_t width, std::uint32_t height) {
       const float weight = down.weights[print.offset + i];
       for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * row[k];
     }
-    store_row(sums, out, y);
+    store_row(sums, source.channels, width, to);
   }
+}
+
+}  // namespace
+
+Image shrink(const Image& source, std::uint32_t width, std::uint32_t height) {
+  Image out{width, height, source.channels, {}};
+  out.pixels.resize(static_cast<std::size_t>(width) * height * source.channels);
+  shrink_rows(source, width, height, out.pixels.data());
   return out;
+}
+
+Image shrink_in_place(Image source, std::uint32_t width, std::uint32_t height) {
+  shrink_rows(source, width, height, source.pixels.data());
+  source.width = width;
+  source.height = height;
+  source.pixels.resize(static_cast<std::size_t>(width) * height * source.channels);
+  return source;
 }
 
 }  // namespace lodestone

@@ -10,4 +10,7 @@ namespace lodestone {
 // colours. Precondition: width and height are at least 1 and at most the source's.
 [[nodiscard]] Image shrink(const Image& source, std::uint32_t width, std::uint32_t height);
 
+// The same in the source's own memory, which the result keeps: for pictures of which there is no room for two.
+[[nodiscard]] Image shrink_in_place(Image source, std::uint32_t width, std::uint32_t height);
+
 }  // namespace lodestone

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "image/area_filter.h"
 #include "image/fill.h"
@@ -115,9 +116,9 @@ const Image& level_image(std::span<const SegmentImages* const> images, const Tex
 
 // A level is made from the coarsest one that still has about two pixels for one, so that errors of rounding and blur do
 // not add up.
-bool enough_for(const Image& image, const glm::uvec2& size) {
+bool enough_for(const glm::uvec2& image_size, const glm::uvec2& size) {
   constexpr double least = 1.9;
-  return image.width >= least * size.x && image.height >= least * size.y;
+  return image_size.x >= least * size.x && image_size.y >= least * size.y;
 }
 
 }  // namespace
@@ -147,24 +148,34 @@ SegmentImages::SegmentImages(const OutcropPyramid& pyramid, std::uint32_t segmen
 
 void SegmentImages::go_to(const OutcropPyramid& pyramid, std::uint32_t wanted) {
   assert(wanted >= level());
-  while (level() < wanted) {
-    const glm::uvec2 size = pyramid.image_size(segment_, level() + 1);
-    std::size_t from = images_.size() - 1;
-    while (from > 0 && !enough_for(images_[from], size)) --from;
-    const Image& source = images_[from];
-    images_.push_back(shrink(source, std::min(size.x, source.width), std::min(size.y, source.height)));
-    images_.erase(images_.begin(), images_.begin() + static_cast<std::ptrdiff_t>(from));
-    first_level_ += static_cast<std::uint32_t>(from);
-    const bool last = level() + 1 >= pyramid.levels().size();
-    if (last || enough_for(images_.back(), pyramid.image_size(segment_, level() + 1))) {  // nothing finer is needed
-      first_level_ = level();
-      images_.erase(images_.begin(), images_.end() - 1);
-    }
+  while (level() < wanted) coarsen(pyramid);
+}
+
+// All that is to be made of the present level is made before it goes, the largest in its own memory.
+void SegmentImages::coarsen(const OutcropPyramid& pyramid) {
+  Image source = std::move(images_.front());
+  images_.erase(images_.begin());
+  ++level_;
+  const auto size_of = [&](std::uint32_t level) {
+    return glm::min(pyramid.image_size(segment_, level), glm::uvec2{source.width, source.height});
+  };
+  const glm::uvec2 next = images_.empty() ? size_of(level_) : glm::uvec2{images_.front().width, images_.front().height};
+  const std::uint32_t first = level_ + static_cast<std::uint32_t>(images_.size());
+  std::uint32_t end = first;
+  while (end < pyramid.levels().size() && (end == level_ || !enough_for(next, pyramid.image_size(segment_, end))))
+    ++end;
+  if (first == end) return;
+  std::vector<Image> smaller;
+  for (std::uint32_t level = first + 1; level < end; ++level) {
+    smaller.push_back(shrink(source, size_of(level).x, size_of(level).y));
   }
+  const glm::uvec2 size = size_of(first);
+  images_.push_back(shrink_in_place(std::move(source), size.x, size.y));
+  std::move(smaller.begin(), smaller.end(), std::back_inserter(images_));
 }
 
 SegmentImages::SegmentImages(std::uint32_t segment, std::uint32_t level, Image image)
-    : segment_(segment), first_level_(level) {
+    : segment_(segment), level_(level) {
   images_.push_back(std::move(image));
 }
 

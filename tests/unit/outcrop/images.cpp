@@ -38,6 +38,7 @@ TEST_CASE("Shrinking keeps the mean light, for whole and fractional steps") {
   const Image image = noise(97, 61, 3);
   for (const auto& [width, height] : {std::pair{48U, 30U}, {50U, 61U}, {97U, 1U}, {78U, 49U}, {1U, 1U}}) {
     const Image small = shrink(image, width, height);
+    CHECK(shrink_in_place(image, width, height).pixels == small.pixels);
     CHECK(small.width == width);
     CHECK(small.height == height);
     CHECK(mean_light(small) == Approx(mean_light(image)).margin(0.01));
