@@ -27,6 +27,7 @@
 #include "facets/outline.h"
 #include "facets/parts.h"
 #include "facets/plan.h"
+#include "facets/scraps.h"
 #include "facets/visibility.h"
 #include "progressive/values.h"
 
@@ -58,6 +59,7 @@ class Builder {
         slides_(mesh_, pieces_),
         planner_(mesh_),
         parts_(mesh_, pieces_),
+        scraps_(mesh_),
         block_(mesh_),
         stepped_(mesh_, block_),
         crossings_(mesh_, parts_),
@@ -90,6 +92,7 @@ class Builder {
   [[nodiscard]] bool is_due(std::uint32_t surface, double price) const;
   [[nodiscard]] bool is_stale(std::uint32_t surface, std::uint64_t version, double price) const;
   void vanish_parts(double price);
+  void vanish_scraps(double price);
   bool close_openings(double price);
   [[nodiscard]] std::uint32_t& count_of(OpeningJob::Kind kind) noexcept {
     return kind == OpeningJob::Kind::Recess    ? report_.openings_recessed
@@ -126,6 +129,7 @@ class Builder {
   SlideJudge slides_;
   Planner planner_;
   PartFinder parts_;
+  ScrapFinder scraps_;
   Block block_;
   Block stepped_;  // comes before it, if it exists
   bool closed_ = true;
@@ -414,6 +418,29 @@ void Builder::vanish_parts(double price) {
   }
 }
 
+void Builder::vanish_scraps(double price) {
+  std::vector<std::uint8_t> leant_upon(mesh_.faces.size(), 0);
+  for (const Scrap& scrap : scraps_.find(price)) {
+    if (done()) break;
+    if (scrap.error_m > options_.max_error_m || mesh_.live_faces - scrap.faces.size() <= next_block().face_count())
+      continue;
+    if (std::any_of(scrap.faces.begin(), scrap.faces.end(), [&](FaceId f) { return leant_upon[f] != 0; }) ||
+        !std::all_of(scrap.support.begin(), scrap.support.end(), [&](FaceId f) { return mesh_.faces[f].live; })) {
+      continue;
+    }
+    if (next_block().needs(mesh_, scrap.faces)) continue;
+    for (const FaceId f : scrap.support) leant_upon[f] = 1;
+    std::vector<std::uint32_t> support;
+    for (const FaceId f : scrap.support)
+      support.insert(support.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+    pieces_.hand_on(scrap.faces, support);
+    vanish(mesh_, scrap.faces, Going::Shrinking, scrap.error_m, log_);
+    for (const FaceId f : scrap.faces)
+      later_.insert(later_.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
+    ++report_.scraps_vanished;
+  }
+}
+
 bool Builder::close_openings(double price) {
   bool any = false;
   openings_->update();
@@ -501,6 +528,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
       any = shift_planes(price);
     }
     if (!done()) vanish_parts(price);
+    if (!done() && !closed_) vanish_scraps(price);
     crossings_.update(mesh_.touched);
     crossings_.start();
     mesh_.touched.clear();
