@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "units.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <span>
@@ -14,8 +16,8 @@ struct Unit {
   double factor;
 };
 constexpr Unit length_units[] = {{"", 1.0}, {"m", 1.0}, {"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}};
-constexpr Unit byte_units[] = {{"", 1.0},    {"B", 1.0},      {"KB", 1e3},     {"MB", 1e6},     {"GB", 1e9},
-                               {"TB", 1e12}, {"KiB", 0x1p10}, {"MiB", 0x1p20}, {"GiB", 0x1p30}, {"TiB", 0x1p40}};
+constexpr Unit byte_units[] = {{"", 1.0},    {"b", 1.0},      {"kb", 1e3},     {"mb", 1e6},     {"gb", 1e9},
+                               {"tb", 1e12}, {"kib", 0x1p10}, {"mib", 0x1p20}, {"gib", 0x1p30}, {"tib", 0x1p40}};
 constexpr Unit count_units[] = {{"", 1.0}, {"k", 1e3}, {"M", 1e6}};
 
 Error bad(const std::string& text, const std::string& wanted) {
@@ -51,7 +53,11 @@ Result<double> parse_number(const std::string& text) { return parse_with_unit(te
 
 Result<std::uint64_t> parse_bytes(const std::string& text) {
   const std::string wanted = "a size such as 4096, 512MB or 2GiB";
-  return whole(parse_with_unit(text, byte_units, wanted), text, wanted);
+  std::string lower = text;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto value = parse_with_unit(lower, byte_units, wanted);
+  return value ? whole(value, text, wanted) : bad(text, wanted);
 }
 
 Result<std::uint64_t> parse_count(const std::string& text) {

@@ -14,7 +14,7 @@ namespace lodestone::cli {
 // "2mm", "3cm", "0.5m", "1km"; a plain number is metres.
 [[nodiscard]] Result<double> parse_length_m(const std::string& text);
 
-// "4096", "512KB", "512MB", "2GB" (powers of 1000), "64KiB", "2GiB" (powers of 1024).
+// "4096", "512KB", "512MB", "2GB" (powers of 1000), "64KiB", "2GiB" (powers of 1024), in letters of any case.
 [[nodiscard]] Result<std::uint64_t> parse_bytes(const std::string& text);
 
 // A whole number without sign: "50000", "50k", "2M".

@@ -6,6 +6,8 @@
 
 #include <lodestone/repair.h>
 
+#include "strays.h"
+
 namespace lodestone {
 namespace {
 
@@ -53,6 +55,28 @@ void drop_bad_positions(Mesh& mesh, Warnings& warnings) {
   }
   for (auto& v : mesh.vertices.positions) {
     if (!finite(v)) v = glm::vec3{0.0F};  // no face uses it any more
+  }
+}
+
+// One number like 1e30 would be all that boxes, errors and cameras see.
+void drop_strays(Mesh& mesh, Warnings& warnings) {
+  const auto reaches_far = [](const glm::vec3& v) {
+    return glm::any(glm::greaterThan(glm::abs(glm::dvec3{v}), glm::dvec3{near_enough}));
+  };
+  auto& p = mesh.vertices.positions;
+  if (std::none_of(p.begin(), p.end(), reaches_far)) return;
+  const Whereabouts whereabouts = whereabouts_of({p.begin(), p.end()});
+  const auto holds = [&](VertexId v) { return whereabouts.hold(glm::dvec3{p[v]}); };
+  const std::uint32_t before = mesh.triangle_count();
+  keep_faces(mesh, [&](std::size_t f) {
+    return holds(mesh.indices[3 * f]) && holds(mesh.indices[3 * f + 1]) && holds(mesh.indices[3 * f + 2]);
+  });
+  if (mesh.triangle_count() < before) {
+    warnings.add("faces with a corner more than 10,000 km from most others were left out: " +
+                 std::to_string(before - mesh.triangle_count()));
+  }
+  for (auto& v : p) {
+    if (!whereabouts.hold(glm::dvec3{v})) v = glm::vec3{whereabouts.middle};  // no face uses it any more
   }
 }
 
@@ -114,6 +138,7 @@ void plain_faces_without_uv(Mesh& mesh, Warnings& warnings) {
 void tidy(Mesh& mesh, Warnings& warnings) {
   drop_bad_indices(mesh, warnings);
   drop_bad_positions(mesh, warnings);
+  drop_strays(mesh, warnings);
   tidy_normals(mesh);
   if (mesh.materials.empty()) {
     Material material;

@@ -29,6 +29,10 @@ TEST_CASE("byte sizes know powers of 1000 and of 1024") {
   CHECK(*parse_bytes("512MB") == 512'000'000);
   CHECK(*parse_bytes("2GiB") == 2ULL << 30);
   CHECK(*parse_bytes("1.5KB") == 1500);
+  for (const char* word : {"20KB", "20kB", "20kb", "20Kb"}) CHECK(*parse_bytes(word) == 20'000);
+  CHECK(*parse_bytes("1mb") == 1'000'000);
+  CHECK(*parse_bytes("1mib") == 1U << 20U);
+  CHECK(parse_bytes("3XB").error().message.find("'3XB'") == 0);
   CHECK_FALSE(parse_bytes("-1").ok());
   CHECK_FALSE(parse_bytes("0.5").ok());
   CHECK_FALSE(parse_bytes("1e30").ok());

@@ -15,6 +15,7 @@
 #include "isolated.h"
 #include "polygon_faces.h"
 #include "reader.h"
+#include "strays.h"
 
 namespace lodestone {
 namespace {
@@ -179,14 +180,13 @@ void SceneReader::add_materials() {
 }
 
 void SceneReader::choose_place() {
-  Box box;
+  std::vector<glm::dvec3> places;
   for (const Instance& instance : instances_) {
     for (unsigned i = 0; i < instance.mesh->mNumVertices; ++i) {
-      const glm::dvec3 p{instance.world * glm::dvec4{vector_of(instance.mesh->mVertices[i]), 1.0}};
-      if (std::isfinite(p.x + p.y + p.z)) box.add(p);
+      places.emplace_back(instance.world * glm::dvec4{vector_of(instance.mesh->mVertices[i]), 1.0});
     }
   }
-  mesh_.origin = choose_origin(box);
+  mesh_.origin = choose_origin(box_without_strays(places.size(), [&](std::size_t i) { return places[i]; }));
 }
 
 void SceneReader::add_vertices(const aiMesh& mesh, const glm::dmat4& to_mesh) {

@@ -9,6 +9,7 @@
 #include "line_reader.h"
 #include "mtl.h"
 #include "polygon_faces.h"
+#include "strays.h"
 #include "wedges.h"
 
 namespace lodestone {
@@ -133,6 +134,8 @@ void ObjReader::read_vertex(Words& words) {
     Words ahead = words;
     glm::dvec3 first{0.0};
     for (int a = 0; a < 3; ++a) (void)ahead.number(first[a]);
+    constexpr double most = 1e10;  // beyond it, beside the others' rounding nothing would be left of the others
+    if (glm::any(glm::greaterThan(glm::abs(first), glm::dvec3{most}))) first = glm::dvec3{0.0};
     Box only;
     only.add(first);
     set_origin(header_.origin ? *header_.origin : (header_.offset ? glm::dvec3{0.0} : choose_origin(only)));
@@ -342,10 +345,9 @@ std::optional<glm::dvec3> ObjReader::better_origin() const {
   };
   if (std::max({reach_m(box_, 0), reach_m(box_, 1), reach_m(box_, 2)}) <= keeps_0_1_mm_m) return std::nullopt;
   // A stray vertex at (0, 0, 0), which no face names, must not pull the origin away from the surface.
-  Box used;
-  for (VertexId w = 0; w < wedges_.size(); ++w) {
-    used.add(glm::dvec3{pool_.positions[wedges_.key(w).position]} + origin_);
-  }
+  const Box used = box_without_strays(wedges_.size(), [&](std::size_t w) {
+    return glm::dvec3{pool_.positions[wedges_.key(static_cast<VertexId>(w)).position]} + origin_;
+  });
   const glm::dvec3 wanted = choose_origin(used);
   for (int a = 0; a < 3 && !used.empty(); ++a) {
     const double reach = reach_m(used, a);

@@ -9,6 +9,7 @@
 #include "header_comments.h"
 #include "ply_body.h"
 #include "polygon_faces.h"
+#include "strays.h"
 
 namespace lodestone {
 namespace {
@@ -478,11 +479,11 @@ void PlyReader::add_materials() {
 }
 
 Result<LoadedMesh> PlyReader::finish() {
-  Box box;  // of the surface: a stray vertex must not pull the origin away from it
-  for (const VertexId v : mesh_.indices) {
-    const glm::dvec3& p = positions_[per_corner_ ? source_[v] : v];
-    if (std::isfinite(p.x + p.y + p.z)) box.add(p);
-  }
+  // Of the surface: a stray vertex must not pull the origin away from it.
+  const Box box = box_without_strays(mesh_.indices.size(), [&](std::size_t i) {
+    const VertexId v = mesh_.indices[i];
+    return positions_[per_corner_ ? source_[v] : v];
+  });
   const HeaderComments& comments = header_.comments;
   const glm::dvec3 origin =
       comments.origin ? *comments.origin : (comments.offset ? glm::dvec3{0.0} : choose_origin(box));

@@ -39,6 +39,7 @@ class Writer {
  public:
   Writer(const lodestone::TilePyramid& pyramid, fs::path folder) : pyramid_(pyramid), folder_(std::move(folder)) {
     options_ = new osgDB::Options("WriteImageHint=IncludeFile Compressor=zlib");
+    options_->getDatabasePathList().push_back((folder_ / "work").string());
     // A node's children are the fine side of the group that it was made by.
     const lodestone::LodGraph& graph = pyramid.graph();
     made_by_.assign(graph.nodes.size(), lodestone::none);
@@ -68,13 +69,15 @@ class Writer {
   bool failed_ = false;
 };
 
-// The photograph's bytes go into the file as they are: OSG takes them from a file of the image's name.
+// The photograph's bytes go into the file as they are: OSG takes them from a file of the image's name, which it looks
+// for in the options' folders. The name is written too, so it must say nothing of where the file was made.
 osg::ref_ptr<osg::StateSet> Writer::look_of(NodeId tile, const Mesh& mesh) {
   osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
   if (mesh.textures.empty() || !mesh.textures.front().encoded) return state;
   const lodestone::Texture& texture = mesh.textures.front();
   const bool png = texture.mime_type == "image/png";
-  const fs::path file = folder_ / "work" / (fs::path{pyramid_.name(tile)}.stem().string() + (png ? ".png" : ".jpg"));
+  const std::string name = fs::path{pyramid_.name(tile)}.stem().string() + (png ? ".png" : ".jpg");
+  const fs::path file = folder_ / "work" / name;
   std::ofstream{file, std::ios::binary}.write(reinterpret_cast<const char*>(texture.encoded->data()),
                                               static_cast<std::streamsize>(texture.encoded->size()));
   osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(file.string());
@@ -82,6 +85,7 @@ osg::ref_ptr<osg::StateSet> Writer::look_of(NodeId tile, const Mesh& mesh) {
     failed_ = !fail(file.string() + ": the texture cannot be read by OpenSceneGraph, install its image plugins");
     return state;
   }
+  image->setFileName(name);
   osg::ref_ptr<osg::Texture2D> picture = new osg::Texture2D{image};
   picture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
   picture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);

@@ -12,6 +12,7 @@
 #include "meshes/writers.h"
 #include "tiles3d/build_record.h"
 #include "tiles3d/jobs.h"
+#include "tiles3d/kept_files.h"
 #include "tiles3d/outcrop_memory.h"
 #include "tiles3d/photographs.h"
 #include "tiles3d/tileset_json.h"
@@ -109,10 +110,7 @@ class OutcropWriter {
   [[nodiscard]] fs::path tile_file(std::uint32_t tile) const {
     return folder_ / tile_name(*pyramid_, tile, options_.version);
   }
-  [[nodiscard]] bool is_done(const fs::path& file) const {
-    std::error_code fault;
-    return options_.resume && fs::exists(file, fault);
-  }
+  [[nodiscard]] bool is_done(const fs::path& file) const { return options_.resume && is_whole_file(file); }
   [[nodiscard]] bool photograph_is_done(std::uint32_t segment) const;
   void tile_finished(bool kept);
   [[nodiscard]] Status finish();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double repeat_slack = 1e-4;  // of a texture: how far a chart may stick out without being moved
 constexpr double most_repeats = 4.0;
-constexpr double farthest_repeat = 1 << 20;  // where a step of floats is an eighth of the image
+constexpr double farthest_repeat = 1 << 10;  // where a step of floats is half a pixel of 4096
 
 struct Extent {
   glm::dvec2 low{std::numeric_limits<double>::infinity()};

@@ -75,6 +75,16 @@ TEST_CASE("A pyramid of OpenSceneGraph files looks like the same one as 3D Tiles
   }
 }
 
+TEST_CASE("OpenSceneGraph's files say nothing of where they were made: the same bytes in another folder") {
+  const fs::path folder = scratch_folder("osgb_elsewhere");
+  fs::copy(both() / "tileset.json", folder);
+  fs::copy(both() / "tiles", folder / "tiles");
+  turn_into_osgb(folder);
+  const auto there = files_of(folder / "osgb");
+  CHECK(there.size() > 2);
+  CHECK(there == files_of(both() / "osgb"));
+}
+
 TEST_CASE(
     "Of OpenSceneGraph's files only those are loaded that the camera needs, and all triangles are in the finest") {
   const auto pyramid = TilePyramid::open(both() / "osgb/main.osgb");

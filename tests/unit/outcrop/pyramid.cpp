@@ -251,6 +251,16 @@ TEST_CASE("Textures that repeat are unwrapped, and left out where a triangle rep
   CHECK((*pyramid)->segments().front().width_px <= 2 * 64 + 4);
   CHECK((*pyramid)->levels().front().triangles == mesh.triangle_count());
 
+  // Far out, a step of floats is too wide for pixels.
+  for (const float far : {900.0F, 3000.0F, 1e6F}) {
+    Mesh moved = mesh;
+    for (auto& uv : moved.vertices.uvs) uv.x += far;
+    const auto built = OutcropPyramid::build(moved, sizes, {});
+    REQUIRE(built);
+    CHECK(((*built)->segments().front().texture == none) == (far > 1000.0F));
+    CHECK(built.warnings().empty() == (far < 1000.0F));
+  }
+
   for (auto& uv : mesh.vertices.uvs) uv *= 100.0F;
   const auto plain = OutcropPyramid::build(mesh, sizes, {});
   REQUIRE(plain);

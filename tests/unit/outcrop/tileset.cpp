@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 
 #include <lodestone/formats.h>
 #include <lodestone/tileset_writer.h>
@@ -140,6 +141,12 @@ TEST_CASE("The same bytes come out for 1, 2 and 8 workers, and after a build tha
   CHECK(report.kept_tiles < report.tiles);
   CHECK(files_of(stopped) == wanted);
 
+  // What was cut off afterwards is made anew.
+  fs::resize_file(stopped / "tiles/L0_1.glb", 500);
+  fs::resize_file(stopped / "tiles/L1_0.glb", 0);
+  CHECK(write(stopped, resume).kept_tiles == report.tiles - 2);
+  CHECK(files_of(stopped) == wanted);
+
   resume.jpeg_quality = 50;
   const auto refused = write_outcrop(small_cliff(), stopped, resume);
   REQUIRE(!refused);
@@ -217,6 +224,47 @@ TEST_CASE("Textures are JPEG, PNG or WebP, as asked, and read back") {
     const auto pixels = decode_image(*tile->mesh.textures.front().encoded, "tile");
     REQUIRE(pixels);
     CHECK(pixels->width % 8 == 0);
+  }
+}
+
+TEST_CASE("A corner that lies astray takes its faces along, with a warning, and not the rest of the outcrop") {
+  const fs::path folder = scratch_folder("tileset_astray");
+  Mesh mesh = grid(20, 20);
+  mesh.origin = {677'400.0, 5'403'200.0, 412.0};
+  const double error_m = [&] {
+    const auto written = write_outcrop(mesh, folder / "whole", {.pyramid = {.tile_bytes = 4096}});
+    REQUIRE(written);
+    return written->root_error_m;
+  }();
+  for (const auto& [corner, x] : {std::pair{0U, 1e30}, {100U, -1e30}, {100U, 1e9}, {0U, 1e9}, {50U, 1e12}}) {
+    INFO(corner << " at " << x);
+    const fs::path file = folder / "astray.obj";
+    std::ofstream obj{file};
+    obj << std::setprecision(12);
+    for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
+      const glm::dvec3 p = mesh.origin + glm::dvec3{mesh.vertices.positions[v]};
+      obj << "v " << (v == corner ? x : p.x) << ' ' << p.y << ' ' << p.z << '\n';
+    }
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+      obj << "f " << mesh.indices[i] + 1 << ' ' << mesh.indices[i + 1] + 1 << ' ' << mesh.indices[i + 2] + 1 << '\n';
+    }
+    obj.close();
+    auto loaded = read_mesh(file);
+    REQUIRE(loaded);
+    REQUIRE(loaded.warnings().size() == 1);
+    CHECK(loaded.warnings().front().message.find("10,000 km") != std::string::npos);
+    CHECK(loaded.warnings().front().where == file.string());
+    CHECK(loaded->mesh.triangle_count() < mesh.triangle_count());
+    CHECK(loaded->mesh.triangle_count() >= mesh.triangle_count() - 6);
+    const FaceId last = loaded->mesh.triangle_count() - 1;
+    const VertexId kept = loaded->mesh.indices[3 * std::size_t{last}];
+    const VertexId meant = mesh.indices[mesh.indices.size() - 3];
+    const glm::dvec3 off = loaded->mesh.origin + glm::dvec3{loaded->mesh.vertices.positions[kept]} - mesh.origin -
+                           glm::dvec3{mesh.vertices.positions[meant]};
+    CHECK(glm::length(off) < 1e-4);
+    const auto written = write_outcrop(std::move(loaded->mesh), folder / "tiles", {.pyramid = {.tile_bytes = 4096}});
+    REQUIRE(written);
+    CHECK(written->root_error_m < 2.0 * error_m + 0.1);
   }
 }
 
