@@ -152,7 +152,11 @@ Status Outcrop::run(Session& session) {
     return or_resume(error, output_);
   }
   const auto check = check_tileset(tiles / "tileset.json", session.context());
-  if (!check) return check.error();
+  if (!check) {
+    Error error = check.error();
+    if (written->kept_tiles > 0) error.message += "; without --resume all tiles are made anew";
+    return error;
+  }
   std::vector<Warning> faults;
   for (const std::string& fault : check->faults) faults.push_back({fault, output_.string()});
   session.keep(std::move(faults));

@@ -85,6 +85,13 @@ TEST_CASE("A build that is killed goes on with --resume to the same bytes") {
   REQUIRE(end(start(again, folder / "log")) == 0);
   CHECK(nlohmann::json::parse(text_of(folder / "log"))["kept_tiles"].get<int>() > 0);
   CHECK(files_of(folder / "cut") == files_of(folder / "whole"));
+
+  // Damage inside a tile that was kept is not mended, but told, with what to do.
+  std::fstream tile{folder / "cut/tiles/L0_0.glb", std::ios::binary | std::ios::in | std::ios::out};
+  tile.seekp(24) << "no json";
+  tile.close();
+  CHECK(end(start(again, folder / "log")) == 2);
+  CHECK(text_of(folder / "log").find("without --resume") != std::string::npos);
 }
 
 TEST_CASE("Where there is no room for a tile the program says so, leaves nothing half-written, and can go on") {
