@@ -21,8 +21,9 @@
 /// the end where they have no area. Every record takes `morph_seconds`; turning back at any instant is seamless.
 ///
 /// Faces drawn anew. Facet shifts of windows and doors end in faces that no vertex of those before glides to; with
-/// Morph these appear at the record's end. With MorphFade they fade in, where they are, while everything else glides:
-/// while fade() is above 0, draw beside() as well, and blend that picture over the first by fade():
+/// Morph these appear at the record's end. With MorphFade they fade in, where they are, while all else glides (but what
+/// would go farther than 2 % of the model's diagonal beside such a record fades too). While fade() is above 0, draw
+/// beside() as well, and blend that picture over the first by fade():
 ///
 ///     draw(cursor, first_frame);
 ///     if (cursor.fade() > 0.0F) draw(*cursor.beside(), second_frame);

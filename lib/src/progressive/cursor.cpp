@@ -19,6 +19,8 @@ using progressive::VertexPointers;
 
 namespace {
 
+constexpr double most_glide_ratio = 0.02;  // of the model's diagonal, beside records that fade
+
 // Hands out arrays from one block. Without a block it only counts the bytes.
 class Carver {
  public:
@@ -72,7 +74,7 @@ struct Cursor::State {
     return options.motion == Motion::MorphFade && !model.data().edits.empty();
   }
   static std::size_t carve(std::byte* block, const ProgressiveModel& model, const CursorOptions& options);
-  void fill(const ModelData& data, const CursorOptions& options, Level start);
+  void fill(const ProgressiveModel& model, const CursorOptions& options, Level start);
   void look_up_merges(const ModelData& data);
   [[nodiscard]] bool draws_anew(const progressive::EditBlock& edit, std::uint32_t first_vertex) const;
   template <class Index>
@@ -137,7 +139,8 @@ void Cursor::State::fill_base(const ModelData& data) {
   }
 }
 
-void Cursor::State::fill(const ModelData& data, const CursorOptions& options, Level start) {
+void Cursor::State::fill(const ProgressiveModel& model, const CursorOptions& options, Level start) {
+  const ModelData& data = model.data();
   std::memset(arrays.indices, 0, 3 * static_cast<std::size_t>(data.face_begin.back()) * index_bytes);
   if (index_bytes == 2) {
     fill_base<std::uint16_t>(data);
@@ -156,6 +159,7 @@ void Cursor::State::fill(const ModelData& data, const CursorOptions& options, Le
     morph.shown = shown;
     morph.merges = merges;
     morph.fades = fading;
+    morph.most_glide_m = static_cast<float>(most_glide_ratio * model.bounds().diagonal_m());
     geomorph = progressive::Geomorph{&data, &arrays, play, morph, std::clamp(options.morph_seconds, 0.0, 10.0)};
   }
   play(data, arrays, at, start);
@@ -221,7 +225,7 @@ Cursor::Cursor(std::shared_ptr<const ProgressiveModel> model, const CursorOption
   block_.reset(new std::byte[State::carve(nullptr, *model_, options)]);
   State::carve(block_.get(), *model_, options);
   state_ = std::launder(reinterpret_cast<State*>(block_.get()));
-  state_->fill(model_->data(), options, std::min(options.start_level, model_->record_count()));
+  state_->fill(*model_, options, std::min(options.start_level, model_->record_count()));
   if (!State::fades(*model_, options)) return;
   CursorOptions still = options;
   still.motion = Motion::Hard;

@@ -222,10 +222,19 @@ void Geomorph::merge_vertices(const StackPosition& at) noexcept {
     const float weight = smooth(batches_[b].progress);
     const std::uint32_t end = b + 1 < count_ ? batches_[b + 1].first_vertex : at.vertices;
     if (weight <= 0.0F) continue;
+    const bool fades = fading() && b == fading_place();
     for (VertexId slot = batches_[b].first_vertex; slot < end; ++slot) {
+      if (fades && goes_far(slot, batches_[b].first_vertex)) continue;
       blend(arrays_.shown, slot, arrays_.merges[slot], weight);
     }
   }
+}
+
+// From where it is to where it lies below its batch, whose vertices begin at `first_vertex`.
+bool Geomorph::goes_far(VertexId slot, std::uint32_t first_vertex) const noexcept {
+  VertexId end = slot;
+  while (end >= first_vertex && arrays_.merges[end] != end) end = arrays_.merges[end];
+  return glm::distance(arrays_.fine.positions[slot], arrays_.fine.positions[end]) > arrays_.most_glide_m;
 }
 
 void Geomorph::insert(std::uint32_t place, const Batch& batch) noexcept {

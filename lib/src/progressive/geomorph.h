@@ -4,7 +4,8 @@
 //
 // Records that draw faces anew cannot glide: where their vertices end is not where the new faces lie. They stay as they
 // are and fade: a batch with such a record is the last to start, at either end of the stretch, and until it has arrived
-// the level below it is drawn too (by a second cursor), blended by its progress.
+// the level below it is drawn too (by a second cursor), blended by its progress. Others of the batch glide as ever, but
+// not far: chains of slides across a wall would shear what stays.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +30,7 @@ struct MorphArrays {
   VertexPointers shown;                 // what is drawn
   const VertexId* merges = nullptr;     // per slot: the lower slot it lies upon when it goes, or itself
   const std::uint8_t* fades = nullptr;  // per record: 1 if it draws faces anew; null: nothing fades
+  float most_glide_m = 0.0F;            // of vertices in a batch that fades: those that go farther stay and fade too
 };
 
 class Geomorph {
@@ -77,6 +79,7 @@ class Geomorph {
   void show(const StackPosition& at, DirtyMap& dirty) noexcept;
   void add_moves(const StackPosition& at, DirtyMap& dirty) noexcept;
   void merge_vertices(const StackPosition& at) noexcept;
+  [[nodiscard]] bool goes_far(VertexId slot, std::uint32_t first_vertex) const noexcept;
 
   void insert(std::uint32_t place, const Batch& batch) noexcept;
   void erase(std::uint32_t place) noexcept;
