@@ -23,6 +23,13 @@ using ByteSpan = std::span<const std::uint8_t>;
 [[nodiscard]] Result<glm::uvec2> jpeg_size(ByteSpan bytes);
 // The most bytes a pixel that decode_jpeg() holds, from the head of a file.
 [[nodiscard]] double jpeg_decode_bytes(ByteSpan bytes);
+// From the head of a file: its size, and the most bytes a pixel that decoding holds.
+struct ImageHead {
+  glm::uvec2 size{0};
+  double decode_bytes = 0.0;
+};
+[[nodiscard]] Result<ImageHead> webp_head(ByteSpan bytes);
+[[nodiscard]] Result<ImageHead> stb_head(ByteSpan bytes);
 [[nodiscard]] Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_webp(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels);
@@ -32,6 +39,9 @@ using ByteSpan = std::span<const std::uint8_t>;
 
 // Nothing if the size is fine; else TooLarge or, for an empty image, BadData.
 [[nodiscard]] Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t max_pixels);
+
+// TooLarge: a decoder got no memory, which is no damage.
+[[nodiscard]] Error no_memory_for(std::uint64_t width, std::uint64_t height);
 
 // The same picture with 3 or 4 channels.
 [[nodiscard]] Image widened_to_rgb(const Image& image);

@@ -46,6 +46,12 @@ Status check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t
   return Done{};
 }
 
+Error no_memory_for(std::uint64_t width, std::uint64_t height) {
+  return {ErrorCode::TooLarge,
+          "there is no memory to decode its " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
+          {}};
+}
+
 Image widened_to_rgb(const Image& image) {
   if (image.channels >= 3) return image;
   Image out{image.width, image.height, image.channels + 2, {}};

@@ -140,6 +140,7 @@ Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_
                     height, format, TJFLAG_LIMITSCANS) != 0) {
     const std::string_view what = tjGetErrorStr2(handle.get());
     const bool harmless = tjGetErrorCode(handle.get()) == TJERR_WARNING && what.find("extraneous") != what.npos;
+    if (what.find("Insufficient memory") != what.npos) return no_memory_for(image.width, image.height);
     if (!harmless) return jpeg_error(handle.get(), "the JPEG data is damaged or cut off");
   }
   const Markers markers = read_markers(bytes);

@@ -64,6 +64,7 @@ Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels) {
   image.pixels.resize(size);
   if (const int code = spng_decode_image(handle.get(), image.pixels.data(), size, format, SPNG_DECODE_TRNS);
       code != 0) {
+    if (code == SPNG_EMEM) return no_memory_for(header.width, header.height);
     return png_error("the PNG data is damaged or cut off", code);
   }
   if (grey) image = narrowed_to_grey(image);

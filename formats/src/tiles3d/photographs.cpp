@@ -17,11 +17,10 @@ std::uint32_t big_endian(ByteSpan bytes, std::size_t at) {
          bytes[at + 3];
 }
 
-// Decoders of other kinds may keep two copies with alpha.
-constexpr double plain_decode_bytes = 8.0;
+constexpr double plain_decode_bytes = 8.0;  // two copies with alpha
 
-// Nothing for kinds whose header is not looked into, or if the head is too short.
-std::optional<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes) {
+// Nothing if it is no image's, or if the head is too short.
+std::optional<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes, const std::string& name) {
   const std::string type = image_mime_type(bytes);
   constexpr std::size_t png_head = 26;
   if (type == "image/png" && bytes.size() >= png_head) {
@@ -30,7 +29,13 @@ std::optional<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes) {
     const double pixel = deep ? plain_decode_bytes : plain_rgb ? 3.0 : 4.0;
     return Photograph{{big_endian(bytes, 16), big_endian(bytes, 20), file_bytes}, pixel};
   }
-  if (type != "image/jpeg") return {};
+  if (type != "image/jpeg") {
+    const bool tga = Input::from_bytes({}, name).extension() == ".tga";
+    if (type.empty() && !tga) return {};
+    const auto head = type == "image/webp" ? webp_head(bytes) : stb_head(bytes);
+    if (!head) return {};
+    return Photograph{{head->size.x, head->size.y, file_bytes}, head->decode_bytes};
+  }
   const auto size = jpeg_size(bytes);
   if (!size) return {};
   return Photograph{{size->x, size->y, file_bytes}, jpeg_decode_bytes(bytes)};
@@ -48,7 +53,7 @@ Result<Photograph> measure(const Texture& texture) {
   }
   if (texture.encoded && !texture.encoded->empty()) {
     const Bytes& bytes = *texture.encoded;
-    if (const auto found = from_head(bytes, bytes.size())) return *found;
+    if (const auto found = from_head(bytes, bytes.size(), name_of(texture))) return *found;
     return by_decoding(bytes, name_of(texture));
   }
   if (texture.path.empty()) return Error{ErrorCode::NotFound, "a texture has neither pixels nor a file", texture.name};
@@ -56,10 +61,10 @@ Result<Photograph> measure(const Texture& texture) {
   if (!input) return input.error();
   Bytes head(std::min<std::uint64_t>(head_bytes, input->size()));
   head.resize(input->read(0, head));
-  if (const auto found = from_head(head, input->size())) return *found;
+  if (const auto found = from_head(head, input->size(), texture.path)) return *found;
   const auto bytes = input->read_all();
   if (!bytes) return bytes.error();
-  if (const auto found = from_head(*bytes, input->size())) return *found;
+  if (const auto found = from_head(*bytes, input->size(), texture.path)) return *found;
   return by_decoding(*bytes, texture.path);
 }
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 
+#include "images/codecs.h"
 #include "meshes/writers.h"
 #include "tiles3d/build_record.h"
 #include "tiles3d/jobs.h"
@@ -341,11 +342,19 @@ bool OutcropWriter::photograph_is_done(std::uint32_t segment) const {
 }
 
 // White, as faces without one are, where it is damaged. What was whole when it was measured and is gone now is no
-// damage.
+// damage, nor is what memory does not do for.
 Result<Image> OutcropWriter::photograph_of(std::uint32_t texture) {
   const TextureInfo& info = infos_[texture];
   const Stopwatch watch{mutex_, report_.decode_seconds};
-  auto decoded = decode_texture(textures_[texture]);
+  auto decoded = [&]() -> Result<Image> {
+    try {
+      return decode_texture(textures_[texture]);
+    } catch (const std::bad_alloc&) {
+      Error error = no_memory_for(info.width_px, info.height_px);
+      error.where = name_of(textures_[texture]);
+      return error;
+    }
+  }();
   const std::scoped_lock lock{mutex_};
   if (decoded && (decoded->width != info.width_px || decoded->height != info.height_px)) {
     return Error{ErrorCode::BadData, "the image changed its size while it was used", name_of(textures_[texture])};
@@ -355,7 +364,8 @@ Result<Image> OutcropWriter::photograph_of(std::uint32_t texture) {
     return decoded;
   }
   const Error& error = decoded.error();
-  if (error.code == ErrorCode::NotFound || error.code == ErrorCode::Unreadable) return error;
+  const bool of_file = error.code == ErrorCode::NotFound || error.code == ErrorCode::Unreadable;
+  if (of_file || error.code == ErrorCode::TooLarge) return error;
   damaged_[textures_[texture].name] = error.message;
   if (Status status = write_record(); !status) return status.error();
   Image white{info.width_px, info.height_px, 3, {}};
