@@ -148,7 +148,8 @@ Status Outcrop::run(Session& session) {
   session.keep(written);
   if (!written) {
     Error error = written.error();
-    if (error.code == ErrorCode::BadData) error.where = in_file(error.where, input_.file());
+    const bool of_input = error.code == ErrorCode::BadData || error.code == ErrorCode::TooLarge;
+    if (of_input) error.where = in_file(error.where, input_.file());
     return or_resume(error, output_);
   }
   const auto check = check_tileset(tiles / "tileset.json", session.context());

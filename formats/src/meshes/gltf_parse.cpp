@@ -67,10 +67,10 @@ tinygltf::FsCallbacks file_access(Folder& folder) {
   return access;
 }
 
-// Images stay encoded.
+// Images stay encoded, those in a buffer stay there.
 bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                 int size, void*) {
-  image->image.assign(bytes, bytes + size);
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
   image->as_is = true;
   return true;
 }

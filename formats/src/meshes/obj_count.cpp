@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Based on: Whang, Vander-Zanden and Taylor 1990, "A linear-time probabilistic counting algorithm" (distinct corners).
-#include "obj_count.h"
+#include "mesh_count.h"
 
 #define XXH_INLINE_ALL  // header only
 #include <xxhash.h>
@@ -55,7 +55,7 @@ class Counter {
       libraries_.emplace(words.rest());
     }
   }
-  [[nodiscard]] ObjCount result(const Input& input, const Context& context) const {
+  [[nodiscard]] MeshCount result(const Input& input, const Context& context) const {
     const double listed = static_cast<double>(std::max({positions_, uvs_, normals_}));
     // Negative numbers count from where they stand, so the same word means many vertices.
     const double most = 3.0 * static_cast<double>(triangles_);
@@ -99,7 +99,7 @@ class Counter {
 
 }  // namespace
 
-Result<ObjCount> count_obj(const Input& input, const Context& context) {
+Result<MeshCount> count_obj(const Input& input, const Context& context) {
   LineReader lines{input, context};
   Counter counter;
   std::string_view line;

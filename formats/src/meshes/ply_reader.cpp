@@ -7,6 +7,7 @@
 
 #include "axes.h"
 #include "header_comments.h"
+#include "mesh_count.h"
 #include "ply_body.h"
 #include "polygon_faces.h"
 #include "strays.h"
@@ -510,7 +511,54 @@ Result<LoadedMesh> PlyReader::finish() {
   return {to_lodestone_axes(std::move(mesh_), "ply", comments.up, 1.0, options_), warnings_.take()};
 }
 
+// Triangles of the polygons whose lists fill the rest of a binary file.
+std::uint64_t triangles_of(const Element& faces, std::uint64_t list_bytes) {
+  std::uint64_t head = 0;
+  std::uint64_t corner = 0;
+  for (const Property& p : faces.properties) {
+    head += size_bytes(p.count_type.value_or(p.type));
+    if (p.count_type) corner += size_bytes(p.type) * (p.role == Role::CornerUv ? 2 : 1);
+  }
+  const std::uint64_t corners = corner == 0 ? 0 : (list_bytes - std::min(list_bytes, head * faces.count)) / corner;
+  return std::max(faces.count, corners - std::min(corners, 2 * faces.count));
+}
+
 }  // namespace
+
+Result<MeshCount> count_ply(const Input& input, const Context& context) {
+  LineReader lines{input, context};
+  const auto header = read_header(lines);
+  if (!header) return header.error();
+  MeshCount count;
+  std::uint64_t rest = input.size() - std::min(input.size(), header->size_bytes);
+  bool per_corner = false;
+  for (const Element& element : header->elements) {
+    if (element.name == "vertex") {
+      count.vertices = element.count;
+      count.vertex_bytes = 12U + (has(element, Role::U) ? 8U : 0U) + (has(element, Role::Nx) ? 12U : 0U) +
+                           (has(element, Role::Red) ? 4U : 0U);
+      std::uint64_t one = 0;
+      for (const Property& p : element.properties) one += size_bytes(p.count_type.value_or(p.type));
+      rest -= std::min(rest, one * element.count);
+    } else if (element.name == "face") {
+      const bool alone = header->elements.size() == 2 && header->encoding != Encoding::Text;
+      count.triangles = alone ? triangles_of(element, rest) : element.count;
+      per_corner = has(element, Role::CornerUv);
+    }
+  }
+  const auto triangles = static_cast<double>(count.triangles);
+  const auto vertices = static_cast<double>(count.vertices);
+  // Coordinates are read in double; arrays of corners grow.
+  count.reading_bytes = (36.0 + count.vertex_bytes) * vertices + (per_corner ? 280.0 : 40.0) * triangles;
+  if (per_corner) {  // vertices are split where the texture is
+    count.vertex_bytes += 8U;
+    count.vertices += count.vertices / 4;
+  }
+  for (const std::string& name : header->textures) {
+    if (auto file = find_beside(input.folder(), name)) count.textures.push_back(std::move(*file));
+  }
+  return count;
+}
 
 Result<LoadedMesh> read_ply(const Input& input, const ReadOptions& options, const Context& context) {
   LineReader lines{input, context};

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meshes/obj_count.h"
+#include "meshes/mesh_count.h"
 #include "tiles3d/jobs.h"
 #include "tiles3d/photographs.h"
 
@@ -30,24 +30,28 @@ double expected_tile_bytes(const OutcropSize& size, std::span<const Photograph> 
 
 std::string megabytes(double bytes) { return std::to_string(static_cast<std::uint64_t>(std::ceil(bytes * 1e-6))); }
 
-Error too_little(const Context& context, const std::string& of_what, double needed, const std::string& where) {
+Error too_little(const Context& context, const std::string& of_what, double needed) {
   return {ErrorCode::TooLarge,
           "a limit of " + megabytes(static_cast<double>(context.max_memory_bytes)) +
               " MB on memory is too little for " + of_what + ": " + megabytes(needed) + "MB will do",
-          where};
+          {}};
+}
+
+double color_bytes(const Photograph& photograph) {
+  constexpr double channels = 3.0;  // most of what has four is no photograph; its decoder says so
+  return std::max(channels, std::min(4.0, photograph.decode_bytes));
 }
 
 // From its file to its last level image: compressed, decoded, filled, shrunk.
 double photograph_bytes(const Photograph& photograph, const OutcropOptions& options) {
   const double pixels = static_cast<double>(photograph.info.width_px) * photograph.info.height_px;
-  constexpr double channels = 3.0;  // most of what has four is no photograph; its decoder says so
-  const double colors = std::max(channels, std::min(4.0, photograph.decode_bytes));
+  const double colors = color_bytes(photograph);
   constexpr double fill_levels = 1.5;  // coarser ones with their weights, and which pixels are known
   // All levels down to one that is half as wide are made of the photograph, the largest of them in its memory.
   const double ratio = options.texture_ratio > 0.0 ? options.texture_ratio : options.ratio > 0.0 ? options.ratio : 0.5;
   double levels = 1.0;
   for (double width = ratio; width > 1.0 / 1.9; width *= ratio) levels += width * ratio * width * ratio;
-  const double file = static_cast<double>(photograph.info.file_bytes);
+  const double file = photograph.kept_bytes > 0 ? 0.0 : static_cast<double>(photograph.info.file_bytes);
   const double most =
       std::max(photograph.decode_bytes * pixels + file, std::max(colors + fill_levels, colors * levels + 0.2) * pixels);
   return most + worker_bytes;
@@ -56,28 +60,32 @@ double photograph_bytes(const Photograph& photograph, const OutcropOptions& opti
 }  // namespace
 
 Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photograph> photographs,
-                               const OutcropOptions& options, const Context& context, const std::string& where) {
+                               const OutcropOptions& options, const Context& context, double reading_bytes) {
   const unsigned workers = workers_of(context);
   if (context.max_memory_bytes == 0) {
     const auto images = static_cast<unsigned>(std::clamp<std::size_t>(photographs.size(), 1, workers));
-    return MemoryPlan{workers, images, workers / images};
+    return MemoryPlan{.geometry_workers = workers, .photograph_workers = images, .tile_workers = workers / images};
   }
   const auto limit = static_cast<double>(context.max_memory_bytes);
   const double tile = per_tile_byte * expected_tile_bytes(size, photographs, options);
+  MemoryPlan plan{.kept_bytes = program_bytes, .tile_bytes = tile};
   double photograph = worker_bytes;
-  for (const Photograph& one : photographs) photograph = std::max(photograph, photograph_bytes(one, options));
+  for (const Photograph& one : photographs) {
+    photograph = std::max(photograph, photograph_bytes(one, options));
+    plan.kept_bytes += static_cast<double>(one.kept_bytes);
+    plan.color_bytes = std::max(plan.color_bytes, color_bytes(one));
+  }
   const double largest = photograph + tile;
-  const double kept = program_bytes + static_cast<double>(outcrop_levels_bytes(size, options));
-  const double building = program_bytes + static_cast<double>(outcrop_build_bytes(size, options, 1));
+  const double kept = plan.kept_bytes + static_cast<double>(outcrop_levels_bytes(size, options));
+  const double building = plan.kept_bytes + static_cast<double>(outcrop_build_bytes(size, options, 1));
   const double checking = program_bytes + check_triangle * static_cast<double>(size.triangles);
-  const double needed = std::max({building, checking, kept + largest});
+  const double needed = std::max({building, checking, kept + largest, program_bytes + reading_bytes});
   if (needed > limit) {
     std::string of_what = std::to_string(size.triangles) + " triangles";
     if (kept + largest >= needed) of_what += " and one photograph of the largest";
-    return too_little(context, of_what, needed, where);
+    return too_little(context, of_what, needed);
   }
-  MemoryPlan plan;
-  const double side_by_side = program_bytes + worker_bytes * workers +
+  const double side_by_side = plan.kept_bytes + worker_bytes * workers +
                               static_cast<double>(outcrop_build_bytes(size, options, std::max(2U, workers)));
   plan.geometry_workers = side_by_side <= limit ? workers : 1U;
   const double room = limit - kept;
@@ -91,30 +99,83 @@ Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photogra
   return plan;
 }
 
+Result<unsigned> joined_at_once(const OutcropPyramid& pyramid, std::span<const std::uint32_t> joined,
+                                const MemoryPlan& plan, const Context& context) {
+  const unsigned workers = workers_of(context);
+  if (context.max_memory_bytes == 0) return workers;
+  double largest_px = 0.0;
+  std::size_t images = 0;  // of that tile
+  for (const std::uint32_t tile : joined) {
+    double pixels = 0.0;
+    const std::vector<std::uint32_t>& segments = pyramid.tiles()[tile].segments;
+    for (const std::uint32_t s : segments) {
+      const glm::uvec2 size = pyramid.image_size(s, pyramid.tiles()[tile].level);
+      if (pyramid.segments()[s].texture != none) pixels += static_cast<double>(size.x) * size.y;
+    }
+    if (pixels > largest_px) {
+      largest_px = pixels;
+      images = segments.size();
+    }
+  }
+  constexpr double pages_half_full = 1.1;
+  const double kept = plan.kept_bytes + pages_half_full * static_cast<double>(pyramid.memory_bytes());
+  const double each = largest_px * plan.color_bytes + plan.tile_bytes + worker_bytes;
+  const auto limit = static_cast<double>(context.max_memory_bytes);
+  if (largest_px > 0.0 && kept + each > limit) {
+    return too_little(context, "a tile that shows " + std::to_string(images) + " images", kept + each);
+  }
+  return static_cast<unsigned>(std::clamp((limit - kept) / each, 1.0, static_cast<double>(workers)));
+}
+
+namespace {
+
+// Its photographs where the mesh's file tells of them.
+std::vector<Photograph> photographs_of(const MeshCount& count, const Input& input) {
+  std::vector<Photograph> photographs;
+  std::vector<Warning> told_when_used;
+  for (const std::filesystem::path& file : count.textures) {
+    photographs.push_back(look_at({.name = file.string(), .path = file.string()}, told_when_used));
+  }
+  for (const InnerImage& image : count.images) {
+    photographs.push_back(look_inside(input, image.offset, image.size_bytes));
+  }
+  if (count.other_image_bytes > 0) photographs.push_back({.kept_bytes = count.other_image_bytes});
+  return photographs;
+}
+
+Status fits(const Input& input, const TilesetOptions& options, const Context& context) {
+  const std::string kind = input.extension();
+  const bool gltf = kind == ".glb" || kind == ".gltf";
+  if (gltf || (kind != ".obj" && kind != ".ply")) {
+    // What reading, or looking at the JSON, takes at least; and what is enough for whatever it may hold.
+    constexpr double most_growth = 12.0;
+    const auto bytes = static_cast<double>(gltf ? 3 * gltf_json_bytes(input) : input.size());
+    if (program_bytes + bytes > static_cast<double>(context.max_memory_bytes)) {
+      return too_little(context, "a file of " + megabytes(static_cast<double>(input.size())) + " MB",
+                        program_bytes + most_growth * static_cast<double>(input.size()));
+    }
+    if (!gltf) return Done{};
+  }
+  const auto count = gltf ? count_gltf(input) : kind == ".ply" ? count_ply(input, context) : count_obj(input, context);
+  if (!count) return count.error();
+  const OutcropSize size{count->triangles, count->vertices, count->vertex_bytes};
+  const auto plan = plan_memory(size, photographs_of(*count, input), options.pyramid, context, count->reading_bytes);
+  if (!plan) return plan.error();
+  return Done{};
+}
+
+}  // namespace
+
 Status outcrop_fits(const std::filesystem::path& mesh_file, const TilesetOptions& options, const Context& context) {
   if (context.max_memory_bytes == 0) return Done{};
   const ReadOptions reading;
   const auto input = Input::open(mesh_file, reading.max_file_bytes);
   if (!input) return input.error();
-  if (input->extension() != ".obj") {
-    // What reading takes at least; and what is enough for whatever it may hold.
-    constexpr double most_growth = 12.0;
-    const auto bytes = static_cast<double>(input->size());
-    if (program_bytes + bytes <= static_cast<double>(context.max_memory_bytes)) return Done{};
-    return too_little(context, "a file of " + megabytes(bytes) + " MB", program_bytes + most_growth * bytes,
-                      mesh_file.string());
-  }
-  const auto count = count_obj(*input, context);
-  if (!count) return count.error();
-  std::vector<Photograph> photographs;
-  std::vector<Warning> told_when_used;
-  for (const std::filesystem::path& file : count->textures) {
-    photographs.push_back(look_at({.name = file.string(), .path = file.string()}, told_when_used));
-  }
-  const OutcropSize size{count->triangles, count->vertices, count->vertex_bytes};
-  const auto plan = plan_memory(size, photographs, options.pyramid, context, mesh_file.string());
-  if (!plan) return plan.error();
-  return Done{};
+  Status status = fits(*input, options, context);
+  if (status) return status;
+  Error error = status.error();
+  if (error.where.empty()) error.where = mesh_file.string();
+  return error;
 }
 
 }  // namespace lodestone

@@ -14,7 +14,8 @@ namespace lodestone {
 // An image before it is decoded.
 struct Photograph {
   TextureInfo info;
-  double decode_bytes = 0.0;  // a pixel, the most while it is decoded
+  double decode_bytes = 0.0;     // a pixel, the most while it is decoded
+  std::uint64_t kept_bytes = 0;  // in memory all the time: an image that is in no file of its own
 };
 
 struct MemoryPlan {
@@ -22,12 +23,19 @@ struct MemoryPlan {
   unsigned photograph_workers = 1;
   unsigned tile_workers = 1;  // on the tiles of each photograph
   bool fewer = false;         // than asked for, because of the limit
+  double kept_bytes = 0.0;    // beside the triangles: the program and images that are in no file of their own
+  double tile_bytes = 0.0;    // while one is composed and written
+  double color_bytes = 0.0;   // a pixel
 };
 
 // As many workers as the limit allows. TooLarge if it does not allow one: names what is needed, rounded up, with which
-// it will do.
+// it will do, which is not less than reading the mesh took.
 [[nodiscard]] Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photograph> photographs,
                                              const OutcropOptions& options, const Context& context,
-                                             const std::string& where);
+                                             double reading_bytes = 0.0);
+
+// How many tiles of several images may be made at once: each loads its images' levels. TooLarge if not one.
+[[nodiscard]] Result<unsigned> joined_at_once(const OutcropPyramid& pyramid, std::span<const std::uint32_t> joined,
+                                              const MemoryPlan& plan, const Context& context);
 
 }  // namespace lodestone

@@ -49,12 +49,15 @@ Result<Photograph> by_decoding(ByteSpan bytes, const std::string& name) {
 
 Result<Photograph> measure(const Texture& texture) {
   if (texture.image) {
-    return Photograph{{texture.image->width, texture.image->height, 0}, static_cast<double>(texture.image->channels)};
+    const Image& image = *texture.image;
+    return Photograph{{image.width, image.height, 0}, static_cast<double>(image.channels), image.pixels.size()};
   }
   if (texture.encoded && !texture.encoded->empty()) {
     const Bytes& bytes = *texture.encoded;
-    if (const auto found = from_head(bytes, bytes.size(), name_of(texture))) return *found;
-    return by_decoding(bytes, name_of(texture));
+    auto found = from_head(bytes, bytes.size(), name_of(texture));
+    if (!found) return by_decoding(bytes, name_of(texture));
+    found->kept_bytes = bytes.size();
+    return *found;
   }
   if (texture.path.empty()) return Error{ErrorCode::NotFound, "a texture has neither pixels nor a file", texture.name};
   const auto input = Input::open(texture.path, most_file_bytes);
@@ -81,6 +84,19 @@ Photograph look_at(const Texture& texture, std::vector<Warning>& warnings) {
   if (found && found->info.width_px > 0 && found->info.height_px > 0) return *found;
   warnings.push_back(plain_warning(found ? "it has no pixels" : found.error().message, name_of(texture)));
   return {};
+}
+
+Photograph look_inside(const Input& input, std::uint64_t offset, std::uint64_t size_bytes) {
+  std::optional<Photograph> found;
+  for (const std::uint64_t most : {std::uint64_t{head_bytes}, size_bytes}) {
+    if (found || offset > input.size()) break;
+    Bytes head(std::min({most, size_bytes, input.size() - offset}));
+    head.resize(input.read(offset, head));
+    found = from_head(head, size_bytes, {});
+  }
+  Photograph photograph = found.value_or(Photograph{});
+  photograph.kept_bytes = size_bytes;
+  return photograph;
 }
 
 Result<Image> decode_texture(const Texture& texture) {

@@ -7,12 +7,16 @@
 #include <lodestone/formats.h>
 #include <lodestone/outcrop.h>
 
+#include "reader.h"
 #include "tiles3d/outcrop_memory.h"
 
 namespace lodestone {
 
 // Size 0 and a warning for a texture that is not there or is no image.
 [[nodiscard]] Photograph look_at(const Texture& texture, std::vector<Warning>& warnings);
+
+// The same for an image inside the mesh's file, without warnings.
+[[nodiscard]] Photograph look_inside(const Input& input, std::uint64_t offset, std::uint64_t size_bytes);
 
 [[nodiscard]] std::string name_of(const Texture& texture);
 

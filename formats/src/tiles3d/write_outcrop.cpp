@@ -95,7 +95,6 @@ class OutcropWriter {
   void leave_no_trace() const;
   void sort_tiles();
   [[nodiscard]] Status plan(const Mesh& mesh);
-  [[nodiscard]] unsigned joined_at_once() const;
   [[nodiscard]] std::vector<std::uint32_t> largest_first() const;
   [[nodiscard]] Status write_photograph(std::uint32_t segment);
   [[nodiscard]] Result<Image> photograph_of(std::uint32_t texture);
@@ -426,26 +425,6 @@ Status OutcropWriter::write_joined(std::uint32_t tile) {
   return write_tile(tile, pointers);
 }
 
-// Tiles of several images load those at their level: as many at once as one photograph has room for in all.
-unsigned OutcropWriter::joined_at_once() const {
-  const unsigned workers = workers_of(context_);
-  if (context_.max_memory_bytes == 0) return workers;
-  double largest_px = 1.0;
-  for (const std::uint32_t tile : joined_) {
-    double pixels = 0.0;
-    for (const std::uint32_t s : pyramid_->tiles()[tile].segments) {
-      const glm::uvec2 size = pyramid_->image_size(s, pyramid_->tiles()[tile].level);
-      if (pyramid_->segments()[s].texture != none) pixels += static_cast<double>(size.x) * size.y;
-    }
-    largest_px = std::max(largest_px, pixels);
-  }
-  double photograph_px = 1.0;
-  for (const TextureInfo& info : infos_) {
-    photograph_px = std::max(photograph_px, static_cast<double>(info.width_px) * info.height_px);
-  }
-  return std::clamp(static_cast<unsigned>(plan_.photograph_workers * photograph_px / largest_px), 1U, workers);
-}
-
 // Segments with an image, so that no large one is left for the end, when other workers have nothing to do.
 std::vector<std::uint32_t> OutcropWriter::largest_first() const {
   const auto& segments = pyramid_->segments();
@@ -492,7 +471,7 @@ Status OutcropWriter::plan(const Mesh& mesh) {
     photographs.push_back(look_at(texture, warnings_));
     infos_.push_back(photographs.back().info);
   }
-  auto plan = plan_memory(outcrop_size(mesh), photographs, options_.pyramid, context_, folder_.string());
+  auto plan = plan_memory(outcrop_size(mesh), photographs, options_.pyramid, context_);
   if (!plan) return plan.error();
   plan_ = *plan;
   report_.geometry_workers = plan_.geometry_workers;
@@ -526,12 +505,16 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   warnings_.insert(warnings_.end(), pyramid.warnings().begin(), pyramid.warnings().end());
   pyramid_ = std::move(*pyramid);
   sort_tiles();
+  const auto joined_workers = joined_at_once(*pyramid_, joined_, plan_, context_);
+  if (!joined_workers) {
+    leave_no_trace();
+    return joined_workers.error();
+  }
   const std::vector<std::uint32_t> order = largest_first();
   Status status = run_jobs(order.size(), plan_.photograph_workers, context_,
                            [&](std::size_t i) { return write_photograph(order[i]); });
   if (!status) return status.error();
-  status =
-      run_jobs(joined_.size(), joined_at_once(), context_, [&](std::size_t i) { return write_joined(joined_[i]); });
+  status = run_jobs(joined_.size(), *joined_workers, context_, [&](std::size_t i) { return write_joined(joined_[i]); });
   if (!status) return status.error();
   if (Status done = finish(); !done) return done.error();
   return {std::move(report_), std::move(warnings_)};
