@@ -13,6 +13,7 @@ namespace {
 
 constexpr double program_bytes = 47e6;    // its code, that of its libraries, and what they need to run
 constexpr double per_tile_byte = 12.0;    // its texture plain and compressed
+constexpr double compressed_pixel = 3.0;  // of a tile: its JPEG or WebP twice, and what the encoder holds
 constexpr double worker_bytes = 1e6;      // what a thread keeps for itself
 constexpr double check_triangle = 110.0;  // edges of the finest level, when the files are read back
 
@@ -68,7 +69,7 @@ Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photogra
   }
   const auto limit = static_cast<double>(context.max_memory_bytes);
   const double tile = per_tile_byte * expected_tile_bytes(size, photographs, options);
-  MemoryPlan plan{.kept_bytes = program_bytes, .tile_bytes = tile};
+  MemoryPlan plan{.kept_bytes = program_bytes};
   double photograph = worker_bytes;
   for (const Photograph& one : photographs) {
     photograph = std::max(photograph, photograph_bytes(one, options));
@@ -103,27 +104,33 @@ Result<unsigned> joined_at_once(const OutcropPyramid& pyramid, std::span<const s
                                 const MemoryPlan& plan, const Context& context) {
   const unsigned workers = workers_of(context);
   if (context.max_memory_bytes == 0) return workers;
-  double largest_px = 0.0;
-  std::size_t images = 0;  // of that tile
+  double each = worker_bytes;
+  std::string largest;
   for (const std::uint32_t tile : joined) {
     double pixels = 0.0;
-    const std::vector<std::uint32_t>& segments = pyramid.tiles()[tile].segments;
-    for (const std::uint32_t s : segments) {
+    std::size_t images = 0;
+    for (const std::uint32_t s : pyramid.tiles()[tile].segments) {
+      if (pyramid.segments()[s].texture == none) continue;
       const glm::uvec2 size = pyramid.image_size(s, pyramid.tiles()[tile].level);
-      if (pyramid.segments()[s].texture != none) pixels += static_cast<double>(size.x) * size.y;
+      pixels += static_cast<double>(size.x) * size.y;
+      ++images;
     }
-    if (pixels > largest_px) {
-      largest_px = pixels;
-      images = segments.size();
-    }
+    // Composed and compressed; and a bound on it, as few tiles are looked into.
+    const double composed = plan.color_bytes + compressed_pixel;
+    constexpr double most_growth = 2.0;
+    if (pixels * (plan.color_bytes + most_growth * composed) <= each) continue;
+    const TileTexture texture = pyramid.content(tile).texture;
+    const double needed =
+        worker_bytes + pixels * plan.color_bytes + composed * static_cast<double>(texture.width) * texture.height;
+    if (needed <= each) continue;
+    each = needed;
+    largest = "a tile of " + std::to_string(texture.width) + " x " + std::to_string(texture.height) +
+              " pixels that shows " + std::to_string(images) + " images";
   }
   constexpr double pages_half_full = 1.1;
   const double kept = plan.kept_bytes + pages_half_full * static_cast<double>(pyramid.memory_bytes());
-  const double each = largest_px * plan.color_bytes + plan.tile_bytes + worker_bytes;
   const auto limit = static_cast<double>(context.max_memory_bytes);
-  if (largest_px > 0.0 && kept + each > limit) {
-    return too_little(context, "a tile that shows " + std::to_string(images) + " images", kept + each);
-  }
+  if (!largest.empty() && kept + each > limit) return too_little(context, largest, kept + each);
   return static_cast<unsigned>(std::clamp((limit - kept) / each, 1.0, static_cast<double>(workers)));
 }
 

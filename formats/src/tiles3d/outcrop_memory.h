@@ -24,7 +24,6 @@ struct MemoryPlan {
   unsigned tile_workers = 1;  // on the tiles of each photograph
   bool fewer = false;         // than asked for, because of the limit
   double kept_bytes = 0.0;    // beside the triangles: the program and images that are in no file of their own
-  double tile_bytes = 0.0;    // while one is composed and written
   double color_bytes = 0.0;   // a pixel
 };
 
