@@ -89,9 +89,9 @@ struct TilesetReport {
 [[nodiscard]] Result<TilesetReport> write_outcrop(Mesh mesh, const std::filesystem::path& folder,
                                                   const TilesetOptions& options = {}, const Context& context = {});
 
-/// The same question before a mesh is read, whose reading takes memory too: the corners of an OBJ file are counted, a PLY
-/// or glTF file tells its counts, and the heads of images are looked at; of other files only the size is known, so a
-/// limit below it and the program's is refused. Done at once where there is no limit. Errors: TooLarge, which names a
+/// The same question before a mesh is read, whose reading takes memory too: the corners of an OBJ file are counted, a
+/// PLY or glTF file tells its counts, and the heads of images are looked at; of other files only the size is known, so
+/// a limit below it and the program's is refused. Done at once where there is no limit. Errors: TooLarge, which names a
 /// limit that will do; those of reading.
 [[nodiscard]] Status outcrop_fits(const std::filesystem::path& mesh_file, const TilesetOptions& options,
                                   const Context& context);
