@@ -84,9 +84,11 @@ class Counter {
       const std::uint64_t corners =
           at(primitive, "indices").is_null() ? vertices : accessor_count(primitive, "indices");
       count_.triangles += times * (mode == triangles ? corners / 3 : corners - std::min<std::uint64_t>(corners, 2));
-      if (seen.insert(attributes.dump(-1, ' ', false, Json::error_handler_t::replace)).second) {
-        count_.vertices += times * vertices;
+      std::string key;
+      for (const auto& [name, accessor] : attributes.items()) {
+        if (accessor.is_number_unsigned()) key += name + '=' + std::to_string(accessor.get<std::uint64_t>()) + ';';
       }
+      if (seen.insert(key).second) count_.vertices += times * vertices;
       uvs_ = uvs_ || attributes.contains("TEXCOORD_0");
       normals_ = normals_ || attributes.contains("NORMAL");
       colors_ = colors_ || attributes.contains("COLOR_0");
