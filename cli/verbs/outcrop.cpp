@@ -153,7 +153,9 @@ Status Outcrop::run(Session& session) {
     return or_resume(error, output_);
   }
   const auto check = check_tileset(tiles / "tileset.json", session.context());
-  if (!check) {
+  if (!check) {  // what cannot be read is not to be taken for whole
+    std::error_code fault;
+    std::filesystem::remove(tiles / "tileset.json", fault);
     Error error = check.error();
     if (written->kept_tiles > 0) error.message += "; without --resume all tiles are made anew";
     return error;

@@ -47,16 +47,6 @@ class Stopwatch {
   double start_ = thread_seconds();
 };
 
-// They are in the finest level, and nowhere else.
-std::uint32_t degenerate_triangles(const Mesh& mesh) {
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return glm::dvec3{mesh.vertices.positions[mesh.indices[i + k]]}; };
-    if (glm::cross(corner(1) - corner(0), corner(2) - corner(0)) == glm::dvec3{0.0}) ++count;
-  }
-  return count;
-}
-
 Error cannot_make(const fs::path& folder, const std::error_code& fault) {
   return {ErrorCode::Unreadable, "the folder cannot be made: " + fault.message(), folder.string()};
 }
@@ -481,13 +471,16 @@ Status OutcropWriter::plan(const Mesh& mesh) {
 }
 
 Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
+  report_.source_triangles = mesh.triangle_count();
+  report_.degenerate_triangles = degenerate_triangle_count(mesh);
+  if (report_.degenerate_triangles == report_.source_triangles) {
+    return Error{ErrorCode::BadData, "no triangle of the outcrop has an area", ""};
+  }
   if (Status status = plan(mesh); !status) return status.error();
   const auto record = record_build(mesh, options_, context_);
   if (!record) return record.error();
   textures_ = mesh.textures;
   for (Texture& texture : mesh.textures) texture = {.name = texture.name};
-  report_.source_triangles = mesh.triangle_count();
-  report_.degenerate_triangles = degenerate_triangles(mesh);
   if (Status status = prepare_folder(*record); !status) return status.error();
   timespec before{};
   timespec after{};

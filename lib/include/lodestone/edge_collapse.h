@@ -64,6 +64,9 @@ struct EdgeCollapseOptions {
   double sharp_edge_rad = 3.141592653589793;
   /// Detached parts whose size falls below the error reached may vanish, as records of their own.
   bool prune_parts = true;
+  /// Per material the group it belongs to; the last face of a group never goes, so the target may not be reached.
+  /// Faces without area do not count. Empty = all may go.
+  std::vector<std::uint32_t> material_groups;
   /// One per vertex (any nonzero = never moved, never removed); empty = none.
   std::vector<std::uint8_t> frozen;
   /// Planes that faces lie in and keep as long as they live: a vertex around which the faces of one plane lie moves in
@@ -88,7 +91,7 @@ struct CollapseReport {
   double locked_by_border = 0.0;
   double locked_by_flip = 0.0;
   double locked_by_link = 0.0;
-  double locked_by_frozen = 0.0;
+  double locked_by_frozen = 0.0;  ///< or the last face of its group would go
   double locked_by_planes = 0.0;
   std::string sentence;  ///< empty if the target was reached
 };

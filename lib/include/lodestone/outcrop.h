@@ -51,7 +51,8 @@ enum class TileSplit : std::uint8_t {
 
 struct OutcropOptions {
   /// Triangles kept from one level to the next, theta of equation 2; 0 = as many as keep the deviation of the middle
-  /// tile at the size of a texel, between 0.2 and 0.7 (0.4 without textures).
+  /// tile at the size of a texel, between 0.2 and 0.7 while textures halve (0.4 without textures). Where these shrink
+  /// more slowly, the bounds hold for as many levels as take them to a half.
   double ratio = 0.0;
   /// Width and height of textures from one level to the next; 0 = `ratio` as in the paper (3.4), or 0.5 if that is 0.
   double texture_ratio = 0.0;
@@ -68,6 +69,8 @@ struct OutcropSize {
   std::uint32_t vertex_bytes = 0;  ///< of a vertex with its attributes
 };
 [[nodiscard]] OutcropSize outcrop_size(const Mesh& mesh) noexcept;
+/// Triangles without area. They are in the finest level, and do not count for errors.
+[[nodiscard]] std::uint32_t degenerate_triangle_count(const Mesh& mesh) noexcept;
 /// The most that OutcropPyramid::build() holds, the mesh handed over included: on one worker, which measures and
 /// simplifies by turns, about 215 bytes a triangle of a welded mesh (300 at a ratio of 0.8), on several 320 (340),
 /// whatever their number. Measured peaks lie 6 to 14 % below. Allocators may keep more of what was freed.
@@ -143,8 +146,9 @@ class OutcropPyramid {
  public:
   /// Segments, tiles, simplifies. `textures` has one element per texture of the mesh. Time about 2 us a triangle,
   /// memory as outcrop_build_bytes() says. The same pyramid comes out for any number of workers. Triangles across which
-  /// their texture repeats more than four times stay plain, with a warning that counts them. Errors: BadData from
-  /// validate(mesh), or no triangles; BadArgument; Cancelled.
+  /// their texture repeats more than four times stay plain, with a warning that counts them. Every tile has at least
+  /// one triangle with an area. Errors: BadData from validate(mesh), or no triangle with an area; BadArgument;
+  /// Cancelled.
   [[nodiscard]] static Result<std::shared_ptr<const OutcropPyramid>> build(Mesh mesh,
                                                                            std::span<const TextureInfo> textures,
                                                                            const OutcropOptions& options = {},

@@ -39,7 +39,16 @@ Refusal Collapser::check_topology() {
   lost_.clear();
   if ((open || state_.loose) && !apexes_stay()) return Refusal::Border;
   if (state_.loose && !state_.keeps_twins) find_twins();
-  return Refusal::None;
+  return groups_stay() ? Refusal::None : Refusal::Frozen;
+}
+
+bool Collapser::groups_stay() {
+  if (state_.options.material_groups.empty()) return true;
+  going_.clear();
+  for (const StarFace& f : star_.faces) {
+    if (f.side == Side::Both || f.twin) going_.push_back(state_.mesh.faces[f.index].id);
+  }
+  return state_.last_faces.may_go(going_, region_);
 }
 
 bool Collapser::link_holds() {
@@ -253,6 +262,7 @@ void Collapser::commit(std::uint32_t key) {
   WorkingMesh& mesh = state_.mesh;
   const float error = error_m_;
   wedges_.commit(star_, choice_, log_);
+  state_.last_faces.take(going_, region_);
   if (!mesh.has_seams()) {
     for (const Lost& lost : lost_) log_.vertices.push_back({mesh.wedge[lost.point], mesh.wedge[choice_.kept]});
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collapse/held_planes.h"
+#include "collapse/last_faces.h"
 #include "collapse/pass_log.h"
 #include "collapse/placement.h"
 #include "collapse/star.h"
@@ -23,6 +24,7 @@ struct PassState {
   WorkingMesh& mesh;
   const Mesh& source;
   const EdgeCollapseOptions& options;
+  LastFaces& last_faces;
   double diagonal_m = 0.0;
   double line_weight = 1.0;
   double share = 0.0;                   // of the points that may go in this pass
@@ -38,8 +40,9 @@ struct PassState {
 // run at once.
 class Collapser {
  public:
-  Collapser(PassState& state, PassLog& log)
-      : state_(state), log_(log), wedges_(state.mesh, state.options, state.diagonal_m) {}
+  // `region` is the number of that region.
+  Collapser(PassState& state, PassLog& log, std::uint32_t region)
+      : state_(state), log_(log), region_(region), wedges_(state.mesh, state.options, state.diagonal_m) {}
 
   // `key` orders the record in the log; a later record that depends on it gets at least the same key.
   Refusal attempt(std::uint32_t u, std::uint32_t v, std::uint32_t key, double cost_limit);
@@ -52,6 +55,7 @@ class Collapser {
   [[nodiscard]] bool link_holds();
   [[nodiscard]] bool apexes_stay();
   void find_twins();
+  [[nodiscard]] bool groups_stay();
   // An edge at u or v with the first two of its faces.
   struct Spoke {
     std::uint32_t from, to, faces;
@@ -77,10 +81,12 @@ class Collapser {
 
   PassState& state_;
   PassLog& log_;
+  std::uint32_t region_;
   Wedges wedges_;
   Star star_;
   std::vector<Spoke> spokes_;
   std::vector<Lost> lost_;
+  std::vector<FaceId> going_;  // faces, if groups are to keep some
   StarQuadric quadric_;
   StarQuadric turns_;  // steer and set the price, but are no distance
   HeldPlanes held_;

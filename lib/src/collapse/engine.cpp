@@ -20,6 +20,7 @@
 #include "base/radix_sort.h"
 #include "collapse/candidates.h"
 #include "collapse/collapser.h"
+#include "collapse/last_faces.h"
 #include "collapse/parts.h"
 #include "collapse/weights.h"
 
@@ -45,6 +46,7 @@ class Engine {
         context_(context),
         sink_(sink),
         start_(start),
+        last_faces_(source, options),
         faces_left_(source.triangle_count()) {}
 
   CollapseReport run();
@@ -79,6 +81,7 @@ class Engine {
   bool relax();
   bool prune_anew();
   [[nodiscard]] CollapseReport report() const;
+  void watch_groups();
   bool pass(double share);
   [[nodiscard]] bool done() const { return faces_left_ <= options_.target_triangles || context_.cancelled(); }
 
@@ -89,6 +92,7 @@ class Engine {
   const Start& start_;
   WorkingMesh mesh_;
   std::vector<Region> regions_;
+  LastFaces last_faces_;
   std::vector<Symmetric3> quadrics_;                          // per point
   std::array<std::uint32_t, refusal_count> last_refusals_{};  // of the last pass
   std::uint32_t faces_left_;
@@ -168,7 +172,7 @@ void Engine::collapse_region(Region& region, PassState& state) const {
   } else {
     coarse_sort(region.edges);
   }
-  Collapser collapser{state, region.log};
+  Collapser collapser{state, region.log, region.sorted.lane};
   // Edges whose exact cost is above the estimate wait until their turn.
   using Later = std::pair<double, std::size_t>;
   std::priority_queue<Later, std::vector<Later>, std::greater<>> later;
@@ -223,6 +227,12 @@ std::uint32_t Engine::hand_over(const PassLog& log, std::size_t begin, std::size
   return static_cast<std::uint32_t>(end - begin);
 }
 
+void Engine::watch_groups() {
+  std::vector<Range> points(regions_.size());
+  std::transform(regions_.begin(), regions_.end(), points.begin(), [](const Region& region) { return region.points; });
+  last_faces_.count(mesh_, points);
+}
+
 bool Engine::pass(double share) {
   compact(mesh_, context_);
   cut_regions();
@@ -236,7 +246,8 @@ bool Engine::pass(double share) {
   const std::uint32_t limit = estimate_all(share);
   quadrics_ = {};  // room for the logs
   if (context_.cancelled()) return false;
-  PassState state{.mesh = mesh_, .source = source_, .options = options_};
+  PassState state{.mesh = mesh_, .source = source_, .options = options_, .last_faces = last_faces_};
+  watch_groups();
   state.diagonal_m = diagonal_m_;
   state.line_weight = line_weight_;
   state.looks_matter = looks_matter_;
@@ -287,7 +298,8 @@ bool Engine::prune(double limit_m) {
   log.pass = ++log_count_;
   limit_m = std::min(limit_m, options_.max_error_m);
   pruned_to_m_ = limit_m;
-  const Pruned pruned = prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, context_, log);
+  const Pruned pruned =
+      prune_parts(mesh_, limit_m, faces_left_ - options_.target_triangles, last_faces_, context_, log);
   error_m_ = std::max(error_m_, double{pruned.largest_m});
   parts_wait_ = pruned.some_wait;
   hand_over(log, 0, log.size());
@@ -403,6 +415,12 @@ Status check(const Mesh& mesh, const EdgeCollapseOptions& options) {
   if (Status status = validate(mesh); !status.ok()) return status.error();
   if (!options.frozen.empty() && options.frozen.size() != mesh.vertex_count()) {
     return Error{ErrorCode::BadArgument, "the mask of frozen vertices must have one element per vertex", "frozen"};
+  }
+  const auto& groups = options.material_groups;
+  const auto unknown = [&](std::uint32_t group) { return group >= groups.size(); };
+  if (!groups.empty() &&
+      (groups.size() != mesh.materials.size() || std::any_of(groups.begin(), groups.end(), unknown))) {
+    return Error{ErrorCode::BadArgument, "materials need one group each, numbered from 0", "material_groups"};
   }
   return check_planes(mesh, options);
 }

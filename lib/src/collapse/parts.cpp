@@ -157,8 +157,14 @@ void log_part(WorkingMesh& mesh, const Part& part, PassLog& log) {
 
 class Pruning {
  public:
-  Pruning(WorkingMesh& mesh, double limit_m, std::uint32_t most_faces, const Context& context, PassLog& log)
-      : mesh_(mesh), limit_m_(limit_m), most_faces_(most_faces), context_(context), log_(log) {}
+  Pruning(WorkingMesh& mesh, double limit_m, std::uint32_t most_faces, LastFaces& last_faces, const Context& context,
+          PassLog& log)
+      : mesh_(mesh),
+        limit_m_(limit_m),
+        most_faces_(most_faces),
+        last_faces_(last_faces),
+        context_(context),
+        log_(log) {}
 
   // Parts side by side, like tiles, would each lean upon the next, which then had to stay: so what is near enough to
   // large parts goes first.
@@ -211,6 +217,7 @@ class Pruning {
         some_wait_ = true;
         continue;
       }
+      if (!groups_stay(part)) continue;
       for (const std::uint32_t i : part.nearest) {
         leant_upon[mesh_.part[mesh_.faces[i].point[0]]] = 1;
         for (const std::uint32_t p : mesh_.faces[i].point) {
@@ -223,9 +230,19 @@ class Pruning {
     }
   }
 
+  // Takes the part's faces out of the count if they may go.
+  bool groups_stay(const Part& part) {
+    std::vector<FaceId> ids;
+    for (const std::uint32_t i : part.faces) ids.push_back(mesh_.faces[i].id);
+    if (!last_faces_.may_go(ids, 0)) return false;
+    last_faces_.take(ids, 0);
+    return true;
+  }
+
   WorkingMesh& mesh_;
   double limit_m_;
   std::uint32_t most_faces_;
+  LastFaces& last_faces_;
   const Context& context_;
   PassLog& log_;
   std::uint32_t gone_ = 0;
@@ -235,10 +252,13 @@ class Pruning {
 
 }  // namespace
 
-Pruned prune_parts(WorkingMesh& mesh, double limit_m, std::uint32_t most_faces, const Context& context, PassLog& log) {
+Pruned prune_parts(WorkingMesh& mesh, double limit_m, std::uint32_t most_faces, LastFaces& last_faces,
+                   const Context& context, PassLog& log) {
   if (mesh.part.empty() || mesh.faces.empty()) return {};
   std::erase_if(mesh.faces, [](const Face& f) { return f.id == none; });
-  Pruning pruning{mesh, limit_m, most_faces, context, log};
+  const Range all{0, mesh.point_count()};
+  last_faces.count(mesh, {&all, 1});
+  Pruning pruning{mesh, limit_m, most_faces, last_faces, context, log};
   pruning.run();
   return pruning.result();
 }

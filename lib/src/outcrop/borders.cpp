@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/edges.h"
+#include "mesh/weld.h"
 
 namespace lodestone::outcrop {
 
@@ -17,6 +18,7 @@ Borders find_borders(std::span<const VertexId> indices, const Weld& weld,
   std::vector<Use> uses;
   uses.reserve(indices.size());
   for (CornerId c = 0; c < indices.size(); ++c) {
+    if (collapsed(weld, &indices[c - c % 3])) continue;  // is in no coarser level
     const std::uint64_t p = weld.point_of[indices[c]];
     const std::uint64_t q = weld.point_of[indices[next_corner(c)]];
     if (p != q) uses.push_back({std::min(p, q) << 32U | std::max(p, q), owner_of_face[c / 3]});
@@ -39,6 +41,25 @@ Borders find_borders(std::span<const VertexId> indices, const Weld& weld,
     i = end;
   }
   return result;
+}
+
+std::vector<std::uint8_t> solid_points(const std::vector<glm::vec3>& positions, std::span<const VertexId> indices,
+                                       const Weld& weld) {
+  std::vector<std::uint8_t> solid(weld.point_count(), 0);
+  std::vector<CornerId> flat;  // where faces without area begin
+  for (CornerId c = 0; c < indices.size(); c += 3) {
+    const auto at = [&](CornerId k) { return glm::dvec3{positions[indices[c + k]]}; };
+    if (glm::cross(at(1) - at(0), at(2) - at(0)) == glm::dvec3{0.0}) {
+      flat.push_back(c);
+      continue;
+    }
+    for (CornerId k = 0; k < 3; ++k) solid[weld.point_of[indices[c + k]]] = 1;
+  }
+  const bool all = std::all_of(flat.begin(), flat.end(), [&](CornerId c) {
+    const auto is_solid = [&](CornerId k) { return solid[weld.point_of[indices[c + k]]] != 0; };
+    return is_solid(0) && is_solid(1) && is_solid(2);
+  });
+  return all ? std::vector<std::uint8_t>{} : solid;
 }
 
 std::vector<std::uint8_t> border_bits(std::span<const VertexId> indices, const Weld& weld,

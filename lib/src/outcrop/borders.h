@@ -22,9 +22,13 @@ struct Borders {
   std::vector<std::uint32_t> open_points;  // their ends, some more than once
 };
 
-// `owner_of_face` is per face. O(n log n).
+// `owner_of_face` is per face. Faces with two corners on one point are left out. O(n log n).
 [[nodiscard]] Borders find_borders(std::span<const VertexId> indices, const Weld& weld,
                                    std::span<const std::uint32_t> owner_of_face);
+
+// Per point: whether a face with an area uses it. Empty if that is so for all points that faces use.
+[[nodiscard]] std::vector<std::uint8_t> solid_points(const std::vector<glm::vec3>& positions,
+                                                     std::span<const VertexId> indices, const Weld& weld);
 
 [[nodiscard]] inline bool is_before(const glm::vec3& a, const glm::vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : (a.y != b.y ? a.y < b.y : a.z < b.z);

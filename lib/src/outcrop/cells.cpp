@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/weld.h"
+
 namespace lodestone::outcrop {
 namespace {
 
@@ -47,6 +49,9 @@ class CellMaker {
     const OutcropSegment& s = segmentation_.segments[segment_];
     return (sum / 3.0 - glm::dvec2{s.left_px, s.top_px}) / glm::dvec2{s.width_px, s.height_px};
   }
+  [[nodiscard]] bool any_area(const Faces& faces) const;
+  void pour_flat(Groups& groups) const;
+  void house_flat_segments();
   [[nodiscard]] double texels(FaceId f) const;
   [[nodiscard]] Measure measure(const Faces& faces) const;
   [[nodiscard]] Groups quarters_of_image(const Faces& faces, const glm::dvec2& low, double size) const;
@@ -71,6 +76,29 @@ double CellMaker::texels(FaceId f) const {
   const glm::uvec2 size = segmentation_.image_px[segment_];
   const auto px = [&](int k) { return to_pixels(mesh_.vertices.uvs[v[k]], size); };
   return area_px2(px(0), px(1), px(2));
+}
+
+bool CellMaker::any_area(const Faces& faces) const {
+  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return area_vector(mesh_, f) != glm::dvec3{0.0}; });
+}
+
+// Faces without area are in no coarser level: a cell of such alone would be a tile without content there.
+void CellMaker::pour_flat(Groups& groups) const {
+  const auto home = std::find_if(groups.begin(), groups.end(), [&](const Faces& group) { return any_area(group); });
+  for (Faces& group : groups) {
+    if (home == groups.end() || group.empty() || any_area(group)) continue;
+    home->insert(home->end(), group.begin(), group.end());
+    std::sort(home->begin(), home->end());
+    group.clear();
+  }
+}
+
+// Faces of images that nothing with an area shows lie in the cell of the first face that has one.
+void CellMaker::house_flat_segments() {
+  FaceId first = 0;
+  while (tree_.leaf_of_face[first] == none || !any_area({first})) ++first;
+  const std::uint32_t home = tree_.leaf_of_face[first];
+  std::replace(tree_.leaf_of_face.begin(), tree_.leaf_of_face.end(), none, home);
 }
 
 Measure CellMaker::measure(const Faces& faces) const {
@@ -175,7 +203,8 @@ std::uint32_t CellMaker::make_cell(const Faces& faces, TileSplit split, int dept
     for (const FaceId f : faces) tree_.leaf_of_face[f] = leaf;
     return leaf;
   }
-  const Groups groups = split == TileSplit::Space ? quarters_of_space(faces) : quarters_of_image(faces, low, size);
+  Groups groups = split == TileSplit::Space ? quarters_of_space(faces) : quarters_of_image(faces, low, size);
+  pour_flat(groups);
   std::vector<std::uint32_t> children;
   for (std::size_t q = 0; q < groups.size(); ++q) {
     if (groups[q].empty()) continue;
@@ -220,6 +249,10 @@ CellTree CellMaker::make(TileSplit split) {
   for (segment_ = 0; segment_ < segmentation_.segments.size(); ++segment_) {
     OutcropSegment& segment = segmentation_.segments[segment_];
     const Faces& faces = segmentation_.faces[segment_];
+    if (!any_area(faces)) {
+      segment.split = TileSplit::Texture;
+      continue;
+    }
     const Measure whole = measure(faces);
     depth_wanted_ = depth_of_equation_1(whole);
     segment.split = segment.texture == none ? TileSplit::Space : split;
@@ -231,6 +264,7 @@ CellTree CellMaker::make(TileSplit split) {
     roots.emplace_back(whole.box.center(), make_cell(faces, segment.split, 0, glm::dvec2{0.0}, 1.0));
   }
   join(std::move(roots));
+  house_flat_segments();
   return std::move(tree_);
 }
 

@@ -34,7 +34,10 @@ void raise_surface(std::vector<TileDeviation>& per_tile, const Tiled& from, cons
       distances(to, from.positions.size(), context, [&](std::size_t i) { return from.positions[i]; });
   for (std::size_t f = 0; f < from.tile_of_face.size(); ++f) {
     double& most = per_tile[from.tile_of_face[f]].surface_m;
-    for (std::size_t k = 0; k < 3; ++k) most = std::max(most, distance[from.indices[3 * f + k]]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId v = from.indices[3 * f + k];
+      if (from.solid.empty() || from.solid[from.weld.point_of[v]] != 0) most = std::max(most, distance[v]);
+    }
   }
 }
 

@@ -21,6 +21,7 @@ struct Tiled {
   std::span<const std::uint32_t> tile_of_face;
   const Weld& weld;
   std::span<const BorderEdge> borders;  // between the tiles
+  std::span<const std::uint8_t> solid;  // per point: held against the other surface; empty = all
 };
 
 struct TileDeviation {

@@ -7,11 +7,22 @@
 #include "mesh/weld.h"
 
 namespace lodestone {
+namespace {
+
+// What only faces without area reach lies anywhere: coarser levels lose it, and no distance tells of it.
+void keep_solid(std::vector<outcrop::BorderEdge>& edges, const std::vector<std::uint8_t>& solid) {
+  if (solid.empty()) return;
+  std::erase_if(edges, [&](const outcrop::BorderEdge& edge) { return solid[edge.a] == 0 || solid[edge.b] == 0; });
+}
+
+}  // namespace
 
 void LevelMeasurer::find_source_borders() {
   const OutcropPyramid::LevelMesh& source = out_.meshes_.front();
   source_weld_ = weld_by_position(source.vertices.positions);
   source_borders_ = outcrop::find_borders(source.indices, source_weld_, leaf_of_face_).edges;
+  source_solid_ = outcrop::solid_points(source.vertices.positions, source.indices, source_weld_);
+  keep_solid(source_borders_, source_solid_);
 }
 
 std::vector<std::uint32_t> LevelMeasurer::tile_of_faces() const {
@@ -66,7 +77,8 @@ void LevelMeasurer::hold_against_source(const std::vector<std::uint32_t>& tile_o
   }
   const auto tiles = static_cast<std::uint32_t>(deviations_.size());
   deviations_ = deviation_->measure(
-      {source.vertices.positions, source.indices, of_source, source_weld_, source_borders}, level, tiles, context);
+      {source.vertices.positions, source.indices, of_source, source_weld_, source_borders, source_solid_}, level, tiles,
+      context);
   std::vector<double> sorted;
   for (const outcrop::TileDeviation& one : deviations_) sorted.push_back(one.surface_m);
   out_.levels_.back().geometric_error_m = *std::max_element(sorted.begin(), sorted.end());
@@ -81,7 +93,7 @@ void LevelMeasurer::measure(const std::vector<std::uint32_t>& tile_of_cell, cons
   const Weld own = is_source ? Weld{} : weld_by_position(level.vertices.positions);
   const Weld& weld = is_source ? source_weld_ : own;
   const std::vector<std::uint32_t> tile_of_face = tile_of_faces();
-  const outcrop::Borders borders = outcrop::find_borders(level.indices, weld, tile_of_face);
+  outcrop::Borders borders = outcrop::find_borders(level.indices, weld, tile_of_face);
   OutcropLevel& info = out_.levels_.back();
   info.open_edges = borders.open_edges;
   std::vector<std::uint8_t> on_border(weld.point_count(), 0);
@@ -96,7 +108,9 @@ void LevelMeasurer::measure(const std::vector<std::uint32_t>& tile_of_cell, cons
     deviation_ = std::make_unique<outcrop::Deviation>(level.vertices.positions, level.indices);
     return;
   }
-  hold_against_source(tile_of_cell, {level.vertices.positions, level.indices, tile_of_face, weld, borders.edges},
+  const std::vector<std::uint8_t> solid = outcrop::solid_points(level.vertices.positions, level.indices, weld);
+  keep_solid(borders.edges, solid);
+  hold_against_source(tile_of_cell, {level.vertices.positions, level.indices, tile_of_face, weld, borders.edges, solid},
                       context);
 }
 

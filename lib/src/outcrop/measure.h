@@ -40,6 +40,7 @@ class LevelMeasurer {
   std::vector<std::uint32_t> leaf_of_face_;  // of the source
   Weld source_weld_;
   std::vector<outcrop::BorderEdge> source_borders_;  // between leaves
+  std::vector<std::uint8_t> source_solid_;           // outcrop::solid_points()
   std::unique_ptr<outcrop::Deviation> deviation_;
   std::vector<outcrop::TileDeviation> deviations_;
   double middle_deviation_m_ = 0.0;

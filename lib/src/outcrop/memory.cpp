@@ -4,6 +4,9 @@
 
 #include <lodestone/outcrop.h>
 
+#include "mesh/weld.h"
+#include "outcrop/ratio.h"
+
 namespace lodestone {
 namespace {
 
@@ -21,8 +24,12 @@ constexpr double distance_vertex = 12.0;
 constexpr double slack = 1.18;
 
 // Of triangles from one level to the next, the most that may come.
-double first_ratio(const OutcropOptions& options) noexcept { return options.ratio > 0.0 ? options.ratio : 0.4; }
-double later_ratio(const OutcropOptions& options) noexcept { return options.ratio > 0.0 ? options.ratio : 0.7; }
+double first_ratio(const OutcropOptions& options) noexcept {
+  return options.ratio > 0.0 ? options.ratio : outcrop::followed_ratio(options).first;
+}
+double later_ratio(const OutcropOptions& options) noexcept {
+  return options.ratio > 0.0 ? options.ratio : outcrop::followed_ratio(options).most;
+}
 
 constexpr int most_levels = 96;
 constexpr double least_share = 1e-4;  // of the source: below, levels count for nothing
@@ -40,6 +47,12 @@ OutcropSize outcrop_size(const Mesh& mesh) noexcept {
                                                 (v.uvs.empty() ? 0 : sizeof(glm::vec2)) +
                                                 (v.colors.empty() ? 0 : sizeof(glm::u8vec4)));
   return {mesh.triangle_count(), mesh.vertex_count(), bytes};
+}
+
+std::uint32_t degenerate_triangle_count(const Mesh& mesh) noexcept {
+  std::uint32_t count = 0;
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) count += area_vector(mesh, f) == glm::dvec3{0.0} ? 1U : 0U;
+  return count;
 }
 
 std::uint64_t outcrop_levels_bytes(const OutcropSize& size, const OutcropOptions& options) noexcept {

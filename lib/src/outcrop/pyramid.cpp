@@ -16,8 +16,10 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "mesh/weld.h"
 #include "outcrop/cells.h"
 #include "outcrop/measure.h"
+#include "outcrop/ratio.h"
 #include "outcrop/tree.h"
 
 namespace lodestone {
@@ -37,6 +39,9 @@ Error bad_argument(std::string message) { return {ErrorCode::BadArgument, std::m
 Status check(const Mesh& mesh, std::span<const TextureInfo> textures, const OutcropOptions& options) {
   if (Status status = validate(mesh); !status) return status.error();
   if (mesh.triangle_count() == 0) return Error{ErrorCode::BadData, "the outcrop has no triangles", ""};
+  if (degenerate_triangle_count(mesh) == mesh.triangle_count()) {
+    return Error{ErrorCode::BadData, "no triangle of the outcrop has an area", ""};
+  }
   if (textures.size() != mesh.textures.size()) return bad_argument("the sizes of all textures must be given");
   const auto in_range = [](double ratio) { return ratio == 0.0 || (ratio >= 0.1 && ratio <= 0.95); };
   if (!in_range(options.ratio)) return bad_argument("the ratio between levels must be 0.1 to 0.95, or 0 for automatic");
@@ -83,10 +88,6 @@ class OutcropBuilder {
   void widen_skirts();
   [[nodiscard]] double bytes_of_front() const;
   [[nodiscard]] Status climb();
-  [[nodiscard]] double texture_ratio() const {
-    if (options_.texture_ratio > 0.0) return options_.texture_ratio;
-    return options_.ratio > 0.0 ? options_.ratio : 0.5;
-  }
   [[nodiscard]] std::uint32_t tile_count() const { return static_cast<std::uint32_t>(cells_of_level_.size()); }
 
   Mesh mesh_;  // the newest level
@@ -98,15 +99,17 @@ class OutcropBuilder {
   outcrop::ByteModel bytes_;
   outcrop::CellTree tree_;
   std::optional<outcrop::Front> front_;
+  const double texture_ratio_ = outcrop::texture_ratio(options_);
   bool stuck_ = false;  // levels do not become smaller
   std::vector<FaceName> names_;
   std::vector<double> leaf_texture_bytes_;  // per cell, at full size
   outcrop::CellBytes cell_bytes_;
-  std::vector<std::uint32_t> cells_of_level_;  // per tile of the level at hand
-  std::vector<std::uint32_t> cells_below_;     // of the level below
-  std::vector<std::uint32_t> tile_of_cell_;    // for leaves and what lies between them and the front
-  double texel_m_ = 0.0;                       // mean over textured faces
-  double ratio_ = 0.4;                         // of triangles, of the last step
+  std::vector<std::uint32_t> cells_of_level_;    // per tile of the level at hand
+  std::vector<std::uint32_t> cells_below_;       // of the level below
+  std::vector<std::uint32_t> tile_of_cell_;      // for leaves and what lies between them and the front
+  std::vector<std::uint32_t> tile_of_material_;  // of mark_tiles()
+  double texel_m_ = 0.0;                         // mean over textured faces
+  double ratio_ = outcrop::untextured_ratio;     // of triangles, of the last step
 
   LevelMeasurer measurer_{*out_};
   std::vector<double> borders_below_m_;  // per tile of the newest level: of the chains of finer levels
@@ -136,6 +139,7 @@ void OutcropBuilder::plan_bytes() {
     area_m2 += used * segment.texel_m * segment.texel_m;
   }
   texel_m_ = area_px > 0.0 ? std::sqrt(area_m2 / area_px) : 0.0;
+  if (texel_m_ > 0.0) ratio_ = outcrop::followed_ratio(options_).first;
   out_->tile_bytes_ = options_.tile_bytes;
   if (options_.tile_bytes == 0) {
     const auto share = static_cast<std::uint64_t>((geometry + texture) / tiles_aimed_at);
@@ -169,9 +173,11 @@ void OutcropBuilder::name_faces() {
   mesh_.features.assign(names_.size(), Feature{});
 }
 
-// Gives every pair of material and tile a material of its own: the collapse keeps to the lines between them.
+// Gives every pair of material and tile a material of its own: the collapse keeps to the lines between them, and leaves
+// each tile a face.
 void OutcropBuilder::mark_tiles() {
   std::map<std::pair<MaterialId, std::uint32_t>, MaterialId> known;
+  tile_of_material_.clear();
   mesh_.materials.clear();
   mesh_.textures.clear();
   mesh_.face_materials.resize(mesh_.triangle_count());
@@ -182,6 +188,7 @@ void OutcropBuilder::mark_tiles() {
     if (is_new) {
       mesh_.materials.push_back(out_->surroundings_.materials[name.material]);
       mesh_.materials.back().texture = none;
+      tile_of_material_.push_back(key.second);
     }
     mesh_.face_materials[f] = at->second;
   }
@@ -197,11 +204,10 @@ bool OutcropBuilder::ratio_is_known() const {
 double OutcropBuilder::choose_ratio() const {
   if (options_.ratio > 0.0) return options_.ratio;
   if (ratio_is_known()) return ratio_;
-  constexpr double least_ratio = 0.2;
-  constexpr double most_ratio = 0.7;
   const double texel_m = texel_m_ / out_->levels_.back().texture_scale;
   const double room = texel_m / std::max(measurer_.middle_deviation_m(), 1e-6 * texel_m);
-  return std::clamp(ratio_ * std::sqrt(room), least_ratio, most_ratio);
+  const outcrop::FollowedRatio bounds = outcrop::followed_ratio(options_);
+  return std::clamp(ratio_ * std::sqrt(room), bounds.least, bounds.most);
 }
 
 Status OutcropBuilder::simplify_once(const Context& context) {
@@ -210,6 +216,7 @@ Status OutcropBuilder::simplify_once(const Context& context) {
   collapse.target_triangles = std::max(1U, static_cast<std::uint32_t>(mesh_.triangle_count() * ratio_));
   collapse.uv_weight = 0.2;
   collapse.sharpness_power = 2.0;
+  collapse.material_groups = tile_of_material_;  // no tile loses its last face
   auto simplified = simplify(std::move(mesh_), collapse, context);
   if (!simplified) return simplified.error();
   mesh_ = std::move(simplified->mesh);
@@ -365,7 +372,7 @@ Status OutcropBuilder::go_up() {
   if (first_measure) measure(context_);
   ratio_ = choose_ratio();
   const auto enough = static_cast<double>(out_->tile_bytes_);
-  front_->merge(cell_bytes_, ratio_, texture_ratio() * texture_ratio(), enough, stuck_);
+  front_->merge(cell_bytes_, ratio_, texture_ratio_ * texture_ratio_, enough, stuck_);
   cells_below_ = std::move(cells_of_level_);
   cells_of_level_ = front_->cells();
   tile_of_cell_ = front_->cover();
@@ -395,7 +402,7 @@ Status OutcropBuilder::climb() {
     const std::uint32_t before = mesh_.triangle_count();
     if (Status status = go_up(); !status) return status;
     stuck_ = mesh_.triangle_count() >= before && texel_m_ == 0.0;  // no better level will come: merge what there is
-    scale *= texture_ratio();
+    scale *= texture_ratio_;
     add_level(scale);
     context_.report("levels", 1.0 - 1.0 / static_cast<double>(out_->levels_.size()));
   }
