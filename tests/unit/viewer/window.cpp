@@ -97,17 +97,24 @@ Image picture(const std::filesystem::path& file) {
 }
 
 // The window program on a display of its own, with these arguments.
-std::string on_display(const std::string& arguments) {
+// Exit code of the viewer on a display of its own. When xvfb-run cannot remove its own folder, because the X server has
+// not let go of it yet, it ends with 5 whatever the program ended with: worth another try.
+int run_on_display(const std::string& arguments, const std::string& standard_error) {
+  constexpr int display_left_its_folder = 5;
   // The driver of the display leaks and is gone before leaks are looked for, so that no suppression can name it.
-  return std::string{"ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 xvfb-run -a -s '-screen 0 1024x700x24' "} +
-         LODESTONE_VIEW_PROGRAM + " " + arguments + " --width 1000 --height 600";
+  const std::string command =
+      std::string{"ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 xvfb-run -a -s '-screen 0 1024x700x24' "} +
+      LODESTONE_VIEW_PROGRAM + " " + arguments + " --width 1000 --height 600 2> " + standard_error;
+  int code = run(command);
+  for (int again = 0; code == display_left_its_folder && again < 2; ++again) code = run(command);
+  return code;
 }
 
 // What it shows once it has come to rest.
 Image shown(const std::filesystem::path& folder, const std::string& arguments) {
   const auto file = folder / "shown.png";
   INFO(arguments);
-  REQUIRE(run(on_display(arguments) + " --screenshot " + file.string() + " 2> /dev/null") == 0);
+  REQUIRE(run_on_display(arguments + " --screenshot " + file.string(), "/dev/null") == 0);
   return picture(file);
 }
 
@@ -170,7 +177,7 @@ TEST_CASE("the window goes to a level by its name") {
   REQUIRE(write_model(*built->model, file));
   const double lod3 = redness(shown(folder, file.string() + " --lod-colors --level lod3"));
   CHECK(redness(shown(folder, file.string() + " --lod-colors --level block")) > lod3 + 10.0);
-  CHECK(run(on_display(file.string() + " --level lod9") + " 2> " + (folder / "log").string()) == 2);
+  CHECK(run_on_display(file.string() + " --level lod9", (folder / "log").string()) == 2);
   std::ifstream in{folder / "log"};
   const std::string log{std::istreambuf_iterator<char>{in}, {}};
   CHECK(log.find("there are lod3, lod2, lod1, block") != std::string::npos);
