@@ -27,11 +27,11 @@
 ///
 ///     draw(cursor, first_frame);
 ///     if (cursor.fade() > 0.0F) draw(*cursor.beside(), second_frame);
-///     present(mix(first_frame, second_frame, cursor.fade()));   // or dither: the second where a pixel's noise <
-///     fade()
+///     present(mix(first_frame, second_frame, cursor.fade()));
 ///
-/// Records that fade take `morph_seconds` too, with those set in motion together with them; what is asked for meanwhile
-/// waits until they have arrived. Models of edge collapses never fade.
+/// Dithering does as well: the second picture where a pixel's noise (a fixed pattern in 0..1) is below fade(). Records
+/// that fade take `morph_seconds` too, with those set in motion together with them; what is asked for meanwhile waits
+/// until they have arrived. Models of edge collapses never fade.
 #pragma once
 
 #include <cstdint>
