@@ -28,6 +28,11 @@ struct FloatBox {
     const glm::dvec3 d = glm::max(glm::max(glm::dvec3{low} - p, p - glm::dvec3{high}), glm::dvec3{0.0});
     return glm::dot(d, d);
   }
+  [[nodiscard]] double squared_distance(const FloatBox& b) const noexcept {
+    const glm::dvec3 d =
+        glm::max(glm::max(glm::dvec3{low} - glm::dvec3{b.high}, glm::dvec3{b.low} - glm::dvec3{high}), glm::dvec3{0.0});
+    return glm::dot(d, d);
+  }
 };
 
 }  // namespace lodestone::facets

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/disjoint_sets.h"
+#include "geometry/distance.h"
 
 namespace lodestone::facets {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t most_part_faces = 256;  // larger ones lose facets first
 constexpr double held_m = 0.03;               // an outline nearer to the rest than this lies on it
 constexpr double held_share = 0.9;            // of the corners of a pane that closes an opening
+constexpr std::size_t most_queries = 16;      // in one walk
 constexpr double long_edge_m = 0.6;           // over shorter ones the distance runs straight
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double look_ahead = 4096.0;  // times the price: so far costs are found, so that not each price asks anew
@@ -24,6 +26,7 @@ PartFinder::PartFinder(const FacetMesh& mesh, const Pieces& pieces)
   corners_.resize(mesh.point_count());
   middles_.resize(std::bit_ceil(mesh.point_count() / 2 + 1));
   measured_.resize(mesh.point_count(), 0);
+  asked_.resize(mesh.point_count(), 0);
   split();
 }
 
@@ -86,27 +89,41 @@ bool PartFinder::closes_opening(double limit_m) const {
     if (!faces_across(f)) continue;
     const auto& p = mesh_.faces[f].point;
     whole += area(f);
-    if (!around_.lies_behind((mesh_.at(p[0]) + mesh_.at(p[1]) + mesh_.at(p[2])) / 3.0, across, id_, limit_m))
-      open += area(f);
+    const std::array<FaceId, 3> hints{corners_[p[0]].face, corners_[p[1]].face, corners_[p[2]].face};
+    const glm::dvec3 middle = (mesh_.at(p[0]) + mesh_.at(p[1]) + mesh_.at(p[2])) / 3.0;
+    if (!around_.lies_behind(middle, across, id_, limit_m, hints)) open += area(f);
   }
   return 2.0 * open > whole;
 }
 
-// How far p is from the rest, infinite if there is nothing within the limit. As long as neither the point nor what it
-// is nearest to has changed, what was found before holds: what is left of the rest comes nearer rarely.
-double PartFinder::sample(const glm::dvec3& p, std::uint32_t version, double limit_m, Sample& known) {
-  const bool same = known.version == version;
-  if (same && known.face == none && known.distance_m >= limit_m) return infinity;
-  if (!same || known.face == none || !mesh_.faces[known.face].live || part_of_[known.face] == id_ ||
-      mesh_.state_of(known.face) != known.state) {
-    const Surroundings::Nearest found = around_.nearest(p, id_, limit_m, last_nearest_);
-    if (found.face == none) {
-      known = {.version = version, .distance_m = limit_m};
-      return infinity;
-    }
-    known = {version, found.face, mesh_.state_of(found.face), found.distance_m};
-    last_nearest_ = found.face;
+// Changes when one of its corners moves.
+std::uint64_t PartFinder::shape_of(FaceId f) const {
+  std::uint64_t hash = 1;
+  for (const std::uint32_t p : mesh_.faces[f].point) {
+    const glm::vec3& at = mesh_.place[p];
+    for (int axis = 0; axis < 3; ++axis)
+      hash = (hash ^ std::bit_cast<std::uint32_t>(at[axis])) * 0x9E3779B97F4A7C15U ^ (hash >> 29U);
   }
+  return hash;
+}
+
+// As long as neither the place nor what it is nearest to has moved, what was found before holds: what is left of the
+// rest comes nearer rarely.
+bool PartFinder::holds(const Sample& known, const glm::vec3& at, double limit_m) const {
+  if (known.at != at) return false;
+  if (known.face == none) return known.distance_m >= limit_m;
+  return mesh_.faces[known.face].live && part_of_[known.face] != id_ && shape_of(known.face) == known.shape;
+}
+
+// How far the place is from the rest, infinite if there is nothing within the limit.
+double PartFinder::sample(const glm::vec3& at, double limit_m, Sample& known) {
+  if (!holds(known, at, limit_m)) {
+    const Surroundings::Nearest found = around_.nearest(glm::dvec3{at}, id_, limit_m, last_nearest_);
+    known = {at, found.face, found.face == none ? 0 : shape_of(found.face),
+             found.face == none ? limit_m : found.distance_m};
+  }
+  if (known.face == none) return infinity;
+  last_nearest_ = known.face;
   if (known.distance_m > limit_m) return infinity;
   part_.error_m = std::max(part_.error_m, known.distance_m);
   const auto& support = mesh_.faces[known.face].point;
@@ -115,9 +132,38 @@ double PartFinder::sample(const glm::dvec3& p, std::uint32_t version, double lim
   return known.distance_m;
 }
 
+// Of all corners of the part, in few walks through what is around.
+void PartFinder::sample_corners(double limit_m) {
+  const auto ask = [&] {
+    around_.nearest(queries_, id_);
+    for (std::size_t i = 0; i < queries_.size(); ++i) {
+      const auto& [at, squared_m, face] = queries_[i];
+      corners_[query_points_[i]] = {at, face, face == none ? 0 : shape_of(face), std::sqrt(squared_m)};
+    }
+    queries_.clear();
+    query_points_.clear();
+  };
+  const auto& hint = mesh_.faces[last_nearest_].point;
+  for (const FaceId f : part_.faces) {
+    for (const std::uint32_t p : mesh_.faces[f].point) {
+      if (asked_[p] == measurement_) continue;
+      asked_[p] = measurement_;
+      const glm::vec3& at = mesh_.place[p];
+      if (holds(corners_[p], at, limit_m)) continue;
+      const double hint_m2 =
+          squared_distance_to_triangle(glm::dvec3{at}, mesh_.at(hint[0]), mesh_.at(hint[1]), mesh_.at(hint[2]));
+      const bool near = hint_m2 < limit_m * limit_m;
+      queries_.push_back({at, near ? hint_m2 : limit_m * limit_m, near ? last_nearest_ : none});
+      query_points_.push_back(p);
+      if (queries_.size() == most_queries) ask();
+    }
+  }
+  if (!queries_.empty()) ask();
+}
+
 double PartFinder::at_corner(std::uint32_t p, double limit_m) {
   if (measured_[p] != measurement_) {
-    const double d = sample(mesh_.at(p), mesh_.version[p], limit_m, corners_[p]);
+    const double d = sample(mesh_.place[p], limit_m, corners_[p]);
     if (std::isinf(d)) return d;
     measured_[p] = measurement_;
   }
@@ -126,11 +172,16 @@ double PartFinder::at_corner(std::uint32_t p, double limit_m) {
 
 double PartFinder::at_middle(std::uint32_t p, std::uint32_t q, double limit_m) {
   if (q < p) std::swap(p, q);
-  Middle& known = middles_[(p * 0x9E3779B1U ^ q * 0x85EBCA6BU) % middles_.size()];
+  if (const FaceId face = corners_[p].face; face == corners_[q].face) {
+    // No more than the mean of both, as is the distance from one triangle; something else may be nearer.
+    const auto& f = mesh_.faces[face].point;
+    return std::sqrt(squared_distance_to_triangle(0.5 * (mesh_.at(p) + mesh_.at(q)), mesh_.at(f[0]), mesh_.at(f[1]),
+                                                  mesh_.at(f[2])));
+  }
+  Middle& known = middles_[(p * 0x9E3779B1U ^ q * 0x85EBCA6BU) & (middles_.size() - 1)];
   if (known.low != p || known.high != q) known = {.low = p, .high = q};
   if (known.measurement != measurement_) {
-    const std::uint32_t version = mesh_.version[p] + mesh_.version[q];
-    const double d = sample(0.5 * (mesh_.at(p) + mesh_.at(q)), version, limit_m, known.sample);
+    const double d = sample(glm::vec3{0.5 * (mesh_.at(p) + mesh_.at(q))}, limit_m, known.sample);
     if (std::isinf(d)) return d;
     known.measurement = measurement_;
   }
@@ -192,7 +243,9 @@ double PartFinder::look_lost() const {
 // False as soon as the part is known to be too dear.
 bool PartFinder::measure(double limit_m, double price, Known& known) {
   ++measurement_;
-  last_nearest_ = none;
+  // What is near to the part before is likely near to this one.
+  if (last_nearest_ != none && (!mesh_.faces[last_nearest_].live || part_of_[last_nearest_] == id_))
+    last_nearest_ = none;
   const auto count = static_cast<double>(part_.faces.size());
   const auto area = [&](FaceId f) { return glm::length(mesh_.area_vector(mesh_.faces[f])); };
   if (known.dearest == none) {
@@ -206,6 +259,7 @@ bool PartFinder::measure(double limit_m, double price, Known& known) {
   known.key = std::min(dearest, ahead) / count;
   if (known.key > price) return false;
   known.key = std::nextafter(price, 2.0 * price);
+  sample_corners(ahead_m);
   double most = -1.0;
   for (const Look look : {Look::FromCorners, Look::Everywhere}) {
     part_.cost = 0.0;

@@ -2,6 +2,7 @@
 // Detached parts that lie on, in or near the rest: frames, bars, railings, pipes, antennas.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -59,12 +60,15 @@ class PartFinder {
   [[nodiscard]] double at_middle(std::uint32_t p, std::uint32_t q, double limit_m);
   // The distance of a place from the rest, when it was looked for last.
   struct Sample {
-    std::uint32_t version = none;  // of the place
-    FaceId face = none;            // the nearest; none: there is nothing within distance_m
-    std::uint64_t state = 0;       // of that face
+    glm::vec3 at{std::numeric_limits<float>::quiet_NaN()};  // the place
+    FaceId face = none;                                     // the nearest; none: there is nothing within distance_m
+    std::uint64_t shape = 0;                                // of that face
     double distance_m = 0.0;
   };
-  [[nodiscard]] double sample(const glm::dvec3& p, std::uint32_t version, double limit_m, Sample& known);
+  [[nodiscard]] std::uint64_t shape_of(FaceId f) const;
+  [[nodiscard]] bool holds(const Sample& known, const glm::vec3& at, double limit_m) const;
+  [[nodiscard]] double sample(const glm::vec3& at, double limit_m, Sample& known);
+  void sample_corners(double limit_m);
   [[nodiscard]] double eroded() const;
   [[nodiscard]] double look_lost() const;
   [[nodiscard]] std::uint64_t support_state(const Part& part) const;
@@ -91,7 +95,10 @@ class PartFinder {
   Part part_;
   std::uint32_t measurement_ = 0;
   std::vector<std::uint32_t> measured_;  // per point: the measurement for which its sample holds
-  FaceId last_nearest_ = none;           // to the sample before
+  std::vector<std::uint32_t> asked_;     // per point: the same for sample_corners()
+  std::vector<Surroundings::Query> queries_;
+  std::vector<std::uint32_t> query_points_;
+  FaceId last_nearest_ = none;  // to the sample before
 };
 
 }  // namespace lodestone::facets

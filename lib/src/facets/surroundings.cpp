@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t most_young = 4;     // the old tree stands until one face in so many has changed
 constexpr std::size_t small_part = 64;    // faces; of larger parts each face has a box of its own
 constexpr std::size_t bundle_faces = 16;  // of a small part
+constexpr double facing_cosine = 0.7;     // of what lies behind
+constexpr double margin_m = 1e-3;         // beside a face that covers
 
 }  // namespace
 
@@ -89,21 +91,14 @@ void Surroundings::update(const std::vector<std::vector<FaceId>>& parts, const s
   gather(young_, [&](FaceId f) { return !stands(f); });
 }
 
-template <class Bound, class Visit>
-void Surroundings::visit(const Grove& grove, const glm::dvec3& p, std::uint32_t part, Bound bound,
-                         Visit visit_slot) const {
-  grove.tree.visit_boxes(p, bound, [&](FaceId i) {
-    const Bundle& bundle = grove.bundles[i];
-    if (bundle.box.squared_distance(p) >= bound()) return true;
-    for (std::uint32_t s = bundle.first; s < bundle.first + bundle.count; ++s) {
-      const Slot& slot = grove.slots[s];
-      if (slot.face == none) continue;
-      // All of a bundle hung together when the tree was built; they may not any more.
-      if ((*part_of_)[slot.face] == part) continue;
-      if (!visit_slot(slot, bundle.count == 1)) return false;
-    }
-    return true;
-  });
+template <class Visit>
+bool Surroundings::visit_others(const Grove& grove, const Bundle& bundle, std::uint32_t part, Visit visit) const {
+  for (std::uint32_t s = bundle.first; s < bundle.first + bundle.count; ++s) {
+    const Slot& slot = grove.slots[s];
+    // All of a bundle hung together when the tree was built; they may not any more.
+    if (slot.face != none && (*part_of_)[slot.face] != part && !visit(slot)) return false;
+  }
+  return true;
 }
 
 Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t part, double limit_m,
@@ -121,33 +116,80 @@ Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t p
     consider(hint, mesh_.place[q[0]], mesh_.place[q[1]], mesh_.place[q[2]]);
   }
   for (const Grove* grove : {&old_, &young_}) {
-    visit(
-        *grove, p, part, [&] { return least; },
-        [&](const Slot& slot, bool alone) {
-          const auto& [a, b, c] = slot.corner;
-          const auto box = [&] { return FloatBox{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}; };
-          if (alone || box().squared_distance(p) < least) consider(slot.face, a, b, c);
-          return true;
-        });
+    const auto bound = [&] { return least; };
+    grove->tree.visit_boxes(p, bound, [&](FaceId i) {
+      const Bundle& bundle = grove->bundles[i];
+      if (bundle.box.squared_distance(p) >= least) return true;
+      return visit_others(*grove, bundle, part, [&](const Slot& slot) {
+        const auto& [a, b, c] = slot.corner;
+        const auto box = [&] { return FloatBox{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}; };
+        if (bundle.count == 1 || box().squared_distance(p) < least) consider(slot.face, a, b, c);
+        return true;
+      });
+    });
   }
   return face == none ? Nearest{} : Nearest{std::sqrt(least), face};
 }
 
-bool Surroundings::lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part,
-                               double limit_m) const {
-  bool found = false;
-  const double bound = std::nextafter(limit_m * limit_m, std::numeric_limits<double>::infinity());
+void Surroundings::nearest(std::span<Query> queries, std::uint32_t part) const {
+  FloatBox around;
+  for (const Query& q : queries) around.add(q.at);
+  const auto find_most = [&] {
+    double most = 0.0;
+    for (const Query& q : queries) most = std::max(most, q.squared_m);
+    return most;
+  };
+  double most = find_most();
+  const TriangleBvh::Place place{glm::dvec3{around.low}, glm::dvec3{around.high}};
   for (const Grove* grove : {&old_, &young_}) {
-    visit(
-        *grove, p, part, [&] { return bound; },
-        [&](const Slot& slot, bool) {
-          const Face& face = mesh_.faces[slot.face];
-          if (!(std::abs(glm::dot(face.normal, across)) > 0.7)) return true;
-          const glm::dvec3 a{slot.corner[0]};
-          const double d2 = squared_distance_to_triangle(p, a, glm::dvec3{slot.corner[1]}, glm::dvec3{slot.corner[2]});
-          found = d2 < bound && std::sqrt(d2) <= std::abs(glm::dot(p - a, face.normal)) + 1e-3;
-          return !found;
-        });
+    const auto bound = [&] { return most; };
+    grove->tree.visit_boxes(place, bound, [&](FaceId i) {
+      const Bundle& bundle = grove->bundles[i];
+      if (bundle.box.squared_distance(around) >= most) return true;
+      bool nearer = false;
+      visit_others(*grove, bundle, part, [&](const Slot& slot) {
+        const auto& [a, b, c] = slot.corner;
+        const FloatBox box{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+        if (box.squared_distance(around) >= most) return true;
+        for (Query& q : queries) {
+          if (box.squared_distance(glm::dvec3{q.at}) >= q.squared_m) continue;
+          const double d2 = squared_distance_to_triangle(glm::dvec3{q.at}, glm::dvec3{a}, glm::dvec3{b}, glm::dvec3{c});
+          if (d2 >= q.squared_m) continue;
+          q.squared_m = d2;
+          q.face = slot.face;
+          nearer = true;
+        }
+        return true;
+      });
+      if (nearer) most = find_most();
+      return true;
+    });
+  }
+}
+
+bool Surroundings::lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part, double limit_m,
+                               std::span<const FaceId> hints) const {
+  const auto covers = [&](FaceId f, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const double facing = glm::dot(mesh_.faces[f].normal, across);
+    if (!(std::abs(facing) > facing_cosine)) return false;
+    const double way_m = glm::dot(mesh_.faces[f].normal, glm::dvec3{a} - p) / facing;
+    const glm::dvec3 there = p + way_m * across;
+    return std::abs(way_m) <= limit_m &&
+           squared_distance_to_triangle(there, glm::dvec3{a}, glm::dvec3{b}, glm::dvec3{c}) <= margin_m * margin_m;
+  };
+  for (const FaceId f : hints) {
+    if (f == none || !mesh_.faces[f].live || (*part_of_)[f] == part) continue;
+    const auto& q = mesh_.faces[f].point;
+    if (covers(f, mesh_.place[q[0]], mesh_.place[q[1]], mesh_.place[q[2]])) return true;
+  }
+  bool found = false;
+  for (const Grove* grove : {&old_, &young_}) {
+    grove->tree.visit_along(p, limit_m * across, margin_m, [&](FaceId i) {
+      return visit_others(*grove, grove->bundles[i], part, [&](const Slot& slot) {
+        found = covers(slot.face, slot.corner[0], slot.corner[1], slot.corner[2]);
+        return !found;
+      });
+    });
     if (found) return true;
   }
   return false;

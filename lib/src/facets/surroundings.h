@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "facets/facet_mesh.h"
@@ -27,9 +28,18 @@ class Surroundings {
   // Among the faces of other parts nearer than the limit. `hint`: one of these that is likely near, or none.
   [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t part, double limit_m, FaceId hint) const;
 
-  // Whether a face of another part, before or behind, covers p when one looks along `across`.
-  [[nodiscard]] bool lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part,
-                                 double limit_m) const;
+  // The same for many places that lie together, in one go.
+  struct Query {
+    glm::vec3 at{0.0F};
+    double squared_m = 0.0;  // before: of the limit, or of the distance from `face`
+    FaceId face = none;
+  };
+  void nearest(std::span<Query> queries, std::uint32_t part) const;
+
+  // Whether a face of another part, before or behind, covers p when one looks along `across`, a unit vector. The hints,
+  // which may be dead or none, are asked first.
+  [[nodiscard]] bool lies_behind(const glm::dvec3& p, const glm::dvec3& across, std::uint32_t part, double limit_m,
+                                 std::span<const FaceId> hints) const;
 
  private:
   // The faces as they were when the tree was built; those that went or moved since are left out. The tree is about
@@ -47,10 +57,9 @@ class Surroundings {
     std::vector<Bundle> bundles;
     TriangleBvh tree{{}, {}};  // of the boxes
   };
-  // Calls visit(slot, alone) for faces of other parts in bundles nearer than bound(), the squared distance, until it
-  // returns false; `alone`: the bundle has no other.
-  template <class Bound, class Visit>
-  void visit(const Grove& grove, const glm::dvec3& p, std::uint32_t part, Bound bound, Visit visit_slot) const;
+  // Calls visit(slot) for the faces of other parts in the bundle until it returns false; whether it never did.
+  template <class Visit>
+  bool visit_others(const Grove& grove, const Bundle& bundle, std::uint32_t part, Visit visit) const;
   void add_bundle(Grove& grove, std::span<const FaceId> faces) const;
   void plant(Grove& grove) const;
   [[nodiscard]] bool stands(FaceId f) const;

@@ -4,6 +4,7 @@
 // are exact, and distances are computed in double.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -71,6 +72,49 @@ class TriangleBvh {
     if (!nodes_.empty()) descend(p, bound, [&](std::uint32_t slot) { return visit(faces_[slot]); });
   }
 
+  // The same for a box, for many places that lie together.
+  struct Place {
+    glm::dvec3 low{0.0}, high{0.0};
+  };
+  template <class Bound, class Visit>
+  void visit_boxes(const Place& place, Bound bound, Visit visit) const {
+    if (!nodes_.empty()) descend(place, bound, [&](std::uint32_t slot) { return visit(faces_[slot]); });
+  }
+
+  // Calls visit(face) for the triangles in nodes whose boxes come within `margin` of the segment from p - reach to
+  // p + reach, until visit returns false.
+  template <class Visit>
+  void visit_along(const glm::dvec3& p, const glm::dvec3& reach, double margin, Visit visit) const {
+    if (nodes_.empty()) return;
+    const glm::dvec3 inverse = 1.0 / reach;
+    const auto meets = [&](const Node& node) {
+      double from = -1.0;
+      double to = 1.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        // Not a number where the segment runs within a side: std::max and std::min leave that out.
+        const double a = (double{node.low[axis]} - margin - p[axis]) * inverse[axis];
+        const double b = (double{node.high[axis]} + margin - p[axis]) * inverse[axis];
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
+      }
+      return from <= to;
+    };
+    std::array<std::uint32_t, most_depth + 1> stack;
+    std::size_t top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const std::uint32_t index = stack[--top];
+      const Node& node = nodes_[index];
+      if (!meets(node)) continue;
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        if (!visit(faces_[node.first + i])) return;
+      }
+      if (node.count > 0) continue;
+      stack[top++] = node.first;
+      stack[top++] = index + 1;
+    }
+  }
+
   // Whether the triangle of this slot lies no farther than `radius`.
   [[nodiscard]] bool near(const glm::dvec3& p, std::uint32_t slot, double radius) const noexcept {
     return squared_distance(p, slot) <= radius * radius;
@@ -97,6 +141,11 @@ class TriangleBvh {
 
     [[nodiscard]] double squared_distance(const glm::dvec3& p) const noexcept {
       const glm::dvec3 d = glm::max(glm::max(glm::dvec3{low} - p, p - glm::dvec3{high}), glm::dvec3{0.0});
+      return squared_length(d);
+    }
+    [[nodiscard]] double squared_distance(const Place& place) const noexcept {
+      const glm::dvec3 d =
+          glm::max(glm::max(glm::dvec3{low} - place.high, place.low - glm::dvec3{high}), glm::dvec3{0.0});
       return squared_length(d);
     }
   };
@@ -134,13 +183,13 @@ class TriangleBvh {
   }
 
   // Calls visit(slot) for the triangles of leaves nearer than bound(), nearer ones first, until it returns false.
-  template <class Bound, class Visit>
-  void descend(const glm::dvec3& p, Bound bound, Visit visit) const {
+  template <class Where, class Bound, class Visit>
+  void descend(const Where& p, Bound bound, Visit visit) const {
     descend(p, bound, visit, [](std::uint32_t) { return false; });
   }
   // Leaves out nodes for which skips(node).
-  template <class Bound, class Visit, class Skips>
-  void descend(const glm::dvec3& p, Bound bound, Visit visit, Skips skips) const {
+  template <class Where, class Bound, class Visit, class Skips>
+  void descend(const Where& p, Bound bound, Visit visit, Skips skips) const {
     struct Waiting {  // no pair: that would fill the whole stack with zeros for every query
       double distance;
       std::uint32_t index;
