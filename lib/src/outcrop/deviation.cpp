@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 
 namespace lodestone::outcrop {
@@ -56,13 +57,46 @@ TriangleBvh chains_of(const Tiled& tiled) {
   return {positions, indices};
 }
 
-// A tile's chain is held against the chain of the same tile: another's may lie nearer.
+// Per edge the extent of the chain it belongs to: of what is connected and lies between the same two tiles.
+std::vector<double> extents_of_chains(const Tiled& tiled) {
+  struct End {
+    std::uint32_t low = 0, high = 0, point = 0, edge = 0;
+    auto operator<=>(const End&) const = default;  // NOLINT(modernize-use-nullptr): has none
+    [[nodiscard]] bool meets(const End& other) const {
+      return low == other.low && high == other.high && point == other.point;
+    }
+  };
+  const auto count = static_cast<std::uint32_t>(tiled.borders.size());
+  std::vector<End> ends;
+  ends.reserve(2 * std::size_t{count});
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const BorderEdge& edge = tiled.borders[i];
+    const auto [low, high] = std::minmax(edge.left, edge.right);
+    ends.push_back({low, high, edge.a, i});
+    ends.push_back({low, high, edge.b, i});
+  }
+  std::sort(ends.begin(), ends.end());
+  DisjointSets chains{count};
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    if (ends[i].meets(ends[i - 1])) chains.join(ends[i].edge, ends[i - 1].edge);
+  }
+  std::vector<Box> boxes(count);
+  for (const End& end : ends) boxes[chains.find(end.edge)].add(glm::dvec3{place(tiled, end.point)});
+  std::vector<double> extents;
+  for (std::uint32_t i = 0; i < count; ++i) extents.push_back(boxes[chains.find(i)].diagonal_m());
+  return extents;
+}
+
+// A tile's chain is held against the chain of the same tile: another's may lie nearer. Where a chain went altogether,
+// as that around the only face of a photograph, the nearest may be anywhere; what gapes there is no wider than the
+// chain.
 void raise_borders(std::vector<TileDeviation>& per_tile, const Tiled& from, const Tiled& to, const Context& context) {
   if (from.borders.empty() || to.borders.empty()) return;
   // Both ends and the middle: between two ends the other chain may turn away.
   constexpr std::size_t samples = 3;
   constexpr std::size_t chunk = 256;
   const TriangleBvh chains = chains_of(to);
+  const std::vector<double> extents = extents_of_chains(from);
   std::vector<std::array<double, 2>> most(from.borders.size(), {0.0, 0.0});  // left, right
   parallel_chunks(most.size(), chunk, context, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -76,7 +110,8 @@ void raise_borders(std::vector<TileDeviation>& per_tile, const Tiled& from, cons
           const auto nearest = chains.nearest_of(p, std::numeric_limits<double>::infinity(), [&](FaceId f) {
             return to.borders[f].left == tile || to.borders[f].right == tile;
           });
-          if (nearest.face != none) most[i][side] = std::max(most[i][side], std::sqrt(nearest.squared_distance));
+          const double away = nearest.face == none ? extents[i] : std::sqrt(nearest.squared_distance);
+          most[i][side] = std::max(most[i][side], std::min(extents[i], away));
         }
       }
     }

@@ -31,8 +31,9 @@ constexpr std::uint64_t least_tile_bytes = 128'000;
 constexpr std::uint64_t most_tile_bytes = 1'000'000;
 constexpr std::uint64_t tiles_aimed_at = 64;
 constexpr std::uint32_t most_levels = 96;
-constexpr double border_slack = 1.1;       // chains are measured at samples
-constexpr double error_step = 1.0 + 1e-4;  // a parent's error is at least so many times a child's
+constexpr std::uint32_t least_triangles = 64;  // of a level: fewer show nothing of a rock and save nothing
+constexpr double border_slack = 1.1;           // chains are measured at samples
+constexpr double error_step = 1.0 + 1e-4;      // a parent's error is at least so many times a child's
 
 Error bad_argument(std::string message) { return {ErrorCode::BadArgument, std::move(message), ""}; }
 
@@ -199,21 +200,21 @@ bool OutcropBuilder::ratio_is_known() const {
   return options_.ratio > 0.0 || texel_m_ == 0.0 || out_->levels_.size() == 1;
 }
 
-// Of the next step. Without a wish it keeps the deviation of the middle tile at the size of a texel: what went too far
-// or not far enough in the step before is made up for in the next.
+// Of the next step. Without a wish it is to bring the deviation of the middle tile to the size of the next level's
+// texels, as if one fell as the other's number grows: so it is on smooth rock. What rough rock makes of it is measured
+// before the step after.
 double OutcropBuilder::choose_ratio() const {
   if (options_.ratio > 0.0) return options_.ratio;
   if (ratio_is_known()) return ratio_;
-  const double texel_m = texel_m_ / out_->levels_.back().texture_scale;
-  const double room = texel_m / std::max(measurer_.middle_deviation_m(), 1e-6 * texel_m);
+  const double next_texel_m = texel_m_ / (out_->levels_.back().texture_scale * texture_ratio_);
   const outcrop::FollowedRatio bounds = outcrop::followed_ratio(options_);
-  return std::clamp(ratio_ * std::sqrt(room), bounds.least, bounds.most);
+  return std::clamp(measurer_.middle_deviation_m() / next_texel_m, bounds.least, bounds.most);
 }
 
 Status OutcropBuilder::simplify_once(const Context& context) {
   mark_tiles();
   EdgeCollapseOptions collapse;
-  collapse.target_triangles = std::max(1U, static_cast<std::uint32_t>(mesh_.triangle_count() * ratio_));
+  collapse.target_triangles = std::max(least_triangles, static_cast<std::uint32_t>(mesh_.triangle_count() * ratio_));
   collapse.uv_weight = 0.2;
   collapse.sharpness_power = 2.0;
   collapse.material_groups = tile_of_material_;  // no tile loses its last face

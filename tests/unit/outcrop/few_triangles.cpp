@@ -27,6 +27,15 @@ Mesh cliff_with_a_speck() {
   return mesh;
 }
 
+// Single triangles here and there, all of one photograph.
+Mesh cliff_with_confetti() {
+  Mesh mesh = cliff_with_a_speck();
+  constexpr FaceId step = 3989;
+  const auto speck = static_cast<MaterialId>(mesh.materials.size() - 1);
+  for (FaceId f = step / 2; f < mesh.triangle_count(); f += step) mesh.face_materials[f] = speck;
+  return mesh;
+}
+
 // Faces without area, in every material, whose corners lie at the other end of the cliff; `more` adds an image that
 // nothing else shows.
 Mesh with_flat_faces(Mesh mesh, bool more) {
@@ -82,6 +91,21 @@ TEST_CASE("No tile loses its last triangle, however few it has or how long its t
   }
   check_written(speck, {});
   check_written(speck, slow);
+}
+
+TEST_CASE("A photograph of which single triangles show here and there leaves errors as they are") {
+  const auto plain = pyramid_of(small_cliff(), small_tiles());
+  const auto confetti = pyramid_of(cliff_with_confetti(), small_tiles());
+  check_every_tile(*confetti, small_cliff());
+  CHECK(confetti->tiles().back().error_m < 3.0 * plain->tiles().back().error_m);
+  CHECK(confetti->tiles().back().error_m < 0.1 * confetti->tiles().back().bounds.diagonal_m());
+}
+
+TEST_CASE("However triangles and textures are asked to shrink, a level is more than a handful of triangles") {
+  const auto pyramid = pyramid_of(small_cliff(), {.ratio = 0.1, .texture_ratio = 0.9, .tile_bytes = 8'000});
+  REQUIRE(pyramid->levels().size() > 3);
+  CHECK(pyramid->levels().back().triangles >= 60);
+  CHECK(pyramid->levels().back().triangles <= 70);
 }
 
 TEST_CASE("Where textures shrink slowly, triangles last as long as they do") {

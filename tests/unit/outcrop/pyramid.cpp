@@ -216,6 +216,20 @@ TEST_CASE("Levels take their triangles from the ratio, tiles their bytes from th
   CHECK(pyramid->levels().back().tiles == 1);
 }
 
+TEST_CASE("Without a ratio rock that is rough beside its texels keeps its triangles, rock that is smooth loses them") {
+  const auto second_step = [](std::uint32_t width_px) {
+    std::vector<TextureInfo> sizes = texture_sizes(small_cliff());
+    for (TextureInfo& size : sizes) size.width_px = size.height_px = width_px;
+    const auto pyramid = OutcropPyramid::build(small_cliff(), sizes, {.tile_bytes = 24'000});
+    REQUIRE(pyramid);
+    const std::vector<OutcropLevel>& levels = (*pyramid)->levels();
+    REQUIRE(levels.size() > 2);
+    return static_cast<double>(levels[2].triangles) / levels[1].triangles;
+  };
+  CHECK(second_step(2048) == Approx(0.7).margin(0.01));  // a texel of centimetres
+  CHECK(second_step(16) == Approx(0.2).margin(0.01));    // of metres
+}
+
 TEST_CASE("The same pyramid comes out for any number of workers") {
   const auto one = pyramid_of(small_cliff(), small_tiles(), 1);
   for (const unsigned workers : {2U, 8U}) {
