@@ -74,7 +74,8 @@ class CityJsonReader {
         return Error{ErrorCode::Unsupported, "is CityJSON version '" + version + "'; versions 1.0 to 2.0 are read",
                      input_.name()};
       }
-      root_ = document;
+      root_ = Json::object();
+      for (const char* key : {"transform", "appearance", "geometry-templates"}) root_[key] = member(document, key);
       const Json& metadata = member(document, "metadata");
       if (const auto crs = text(member(metadata, "referenceSystem")); !crs.empty()) builder_.set_crs(crs);
       read_templates();
@@ -315,7 +316,7 @@ class CityJsonReader {
 
   const Input& input_;
   CityBuilder builder_;
-  Json root_;
+  Json root_;  // what is not of the city's objects, which may be most of the memory
   std::vector<glm::dvec3> template_points_;
 };
 

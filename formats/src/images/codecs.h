@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,20 +20,24 @@ using ByteSpan = std::span<const std::uint8_t>;
 
 // With `at_least` not 0 possibly smaller: down to an eighth, its longer side at least so many pixels.
 [[nodiscard]] Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_t at_least = 0);
-// Upright, from the head of a file.
-[[nodiscard]] Result<glm::uvec2> jpeg_size(ByteSpan bytes);
-// The most bytes a pixel that decode_jpeg() holds, from the head of a file.
-[[nodiscard]] double jpeg_decode_bytes(ByteSpan bytes);
-// From the head of a file: its size, and the most bytes a pixel that decoding holds.
-struct ImageHead {
-  glm::uvec2 size{0};
-  double decode_bytes = 0.0;
-};
-[[nodiscard]] Result<ImageHead> webp_head(ByteSpan bytes);
-[[nodiscard]] Result<ImageHead> stb_head(ByteSpan bytes);
 [[nodiscard]] Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_webp(ByteSpan bytes, std::uint64_t max_pixels);
 [[nodiscard]] Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels);
+
+// What the first bytes of a file say.
+struct ImageHead {
+  glm::uvec2 size{0};                                            // upright
+  double decode_bytes = 0.0;                                     // a pixel, the most that decoding holds
+  double byte_pixels = std::numeric_limits<double>::infinity();  // the most that a byte of the file stands for
+};
+[[nodiscard]] Result<ImageHead> jpeg_head(ByteSpan bytes);
+[[nodiscard]] Result<ImageHead> png_head(ByteSpan bytes);
+[[nodiscard]] Result<ImageHead> webp_head(ByteSpan bytes);
+[[nodiscard]] Result<ImageHead> stb_head(ByteSpan bytes);
+// Of any kind. Errors as those of decode_image(), which begins with it: more than `max_pixels`, or more than a file of
+// so many bytes can hold, among them; or a head that is longer than the bytes given.
+[[nodiscard]] Result<ImageHead> image_head(ByteSpan bytes, std::uint64_t file_bytes, const std::string& source,
+                                           std::uint64_t max_pixels);
 
 // The picture with its longer side at most `longest` pixels, as JPEG, or PNG where it has alpha.
 [[nodiscard]] Result<Bytes> encode_preview(ByteSpan bytes, const std::string& source, std::uint32_t longest);

@@ -87,19 +87,77 @@ Image upright(Image image, int exif_orientation) {
   return out;
 }
 
-Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& source, std::uint64_t max_pixels) {
+namespace {
+
+// Of JPEG, PNG and WebP each has its own, the others are stb's.
+enum class Decoder : std::uint8_t { None, Jpeg, Png, Webp, Stb };
+
+Decoder decoder_of(ByteSpan bytes, const std::string& source) {
   const std::string type = image_mime_type(bytes);
-  auto result = [&]() -> Result<Image> {
-    if (type == "image/jpeg") return decode_jpeg(bytes, max_pixels);
-    if (type == "image/png") return decode_png(bytes, max_pixels);
-    if (type == "image/webp") return decode_webp(bytes, max_pixels);
-    if (!type.empty() || named(source, ".tga")) return decode_stb(bytes, max_pixels);
-    return Error{ErrorCode::Unsupported, "is not a JPEG, PNG, WebP, GIF, BMP or TGA image", {}};
-  }();
-  if (result) return result;
-  Error error = result.error();
+  if (type == "image/jpeg") return Decoder::Jpeg;
+  if (type == "image/png") return Decoder::Png;
+  if (type == "image/webp") return Decoder::Webp;
+  return !type.empty() || named(source, ".tga") ? Decoder::Stb : Decoder::None;
+}
+
+Result<ImageHead> plain_head(ByteSpan bytes, Decoder decoder) {
+  switch (decoder) {
+    case Decoder::Jpeg:
+      return jpeg_head(bytes);
+    case Decoder::Png:
+      return png_head(bytes);
+    case Decoder::Webp:
+      return webp_head(bytes);
+    case Decoder::Stb:
+      return stb_head(bytes);
+    case Decoder::None:
+      break;
+  }
+  return Error{ErrorCode::Unsupported, "is not a JPEG, PNG, WebP, GIF, BMP or TGA image", {}};
+}
+
+Status check_head(const ImageHead& head, std::uint64_t file_bytes, std::uint64_t max_pixels) {
+  const double pixels = static_cast<double>(head.size.x) * head.size.y;
+  if (pixels <= head.byte_pixels * static_cast<double>(file_bytes)) {
+    return check_image_size(head.size.x, head.size.y, max_pixels);
+  }
+  return Error{ErrorCode::BadData,
+               "its " + std::to_string(head.size.x) + " x " + std::to_string(head.size.y) + " pixels are more than " +
+                   std::to_string(file_bytes) + " bytes can hold, it is damaged or cut off",
+               {}};
+}
+
+Error in_source(Error error, const std::string& source) {
   error.where = source;
   return error;
+}
+
+}  // namespace
+
+Result<ImageHead> image_head(ByteSpan bytes, std::uint64_t file_bytes, const std::string& source,
+                             std::uint64_t max_pixels) {
+  auto head = plain_head(bytes, decoder_of(bytes, source));
+  if (!head) return in_source(head.error(), source);
+  if (auto fits = check_head(*head, file_bytes, max_pixels); !fits) return in_source(fits.error(), source);
+  return head;
+}
+
+Result<Image> decode_image(std::span<const std::uint8_t> bytes, const std::string& source, std::uint64_t max_pixels) {
+  if (auto head = image_head(bytes, bytes.size(), source, max_pixels); !head) return head.error();
+  auto result = [&]() -> Result<Image> {
+    switch (decoder_of(bytes, source)) {
+      case Decoder::Jpeg:
+        return decode_jpeg(bytes, max_pixels);
+      case Decoder::Png:
+        return decode_png(bytes, max_pixels);
+      case Decoder::Webp:
+        return decode_webp(bytes, max_pixels);
+      default:
+        return decode_stb(bytes, max_pixels);
+    }
+  }();
+  if (result) return result;
+  return in_source(result.error(), source);
 }
 
 Result<Image> read_image(const std::filesystem::path& file) {

@@ -24,6 +24,7 @@ struct Markers {
   int orientation = 1;
   bool adobe = false;  // Adobe writes CMYK inverted: 255 is no ink
   bool progressive = false;
+  bool arithmetic = false;
 };
 
 unsigned u16(ByteSpan b, std::size_t at, bool little) {
@@ -70,6 +71,7 @@ Markers read_markers(ByteSpan bytes) {
     }
     if (marker == 0xEE && body.size() >= 5 && std::memcmp(body.data(), "Adobe", 5) == 0) markers.adobe = true;
     if (marker == 0xC2 || marker == 0xC6) markers.progressive = true;
+    if (marker >= 0xC9 && marker <= 0xCF && marker != 0xCC) markers.arithmetic = true;
     at += 2 + length;
   }
   return markers;
@@ -148,19 +150,11 @@ Result<Image> decode_jpeg(ByteSpan bytes, std::uint64_t max_pixels, std::uint32_
   return upright(std::move(image), markers.orientation);
 }
 
-Result<glm::uvec2> jpeg_size(ByteSpan bytes) {
+Result<ImageHead> jpeg_head(ByteSpan bytes) {
   const Handle handle{tjInitDecompress()};
   const auto header = read_header(handle.get(), bytes);
   if (!header) return header.error();
-  const auto [width, height, space] = *header;
-  const bool turned = read_markers(bytes).orientation >= 5;
-  return turned ? glm::uvec2{height, width} : glm::uvec2{width, height};
-}
-
-double jpeg_decode_bytes(ByteSpan bytes) {
-  const Handle handle{tjInitDecompress()};
-  const auto header = read_header(handle.get(), bytes);
-  if (!header) return 0.0;
+  const glm::uvec2 stored{header->width, header->height};
   const bool cmyk = header->space == TJCS_CMYK || header->space == TJCS_YCCK;
   const double components = cmyk ? 4.0 : (header->space == TJCS_GRAY ? 1.0 : 3.0);
   const double pixel = cmyk ? 3.0 : components;
@@ -168,7 +162,13 @@ double jpeg_decode_bytes(ByteSpan bytes) {
   constexpr double coefficient = 2.0;
   // One after the other: all coefficients of a progressive file, CMYK beside RGB, the picture beside the upright one.
   const double decoding = components + (markers.progressive ? coefficient * components : 0.0);
-  return std::max({decoding, cmyk ? components + pixel : 0.0, markers.orientation != 1 ? 2.0 * pixel : 0.0});
+  ImageHead head{.size = markers.orientation >= 5 ? glm::uvec2{stored.y, stored.x} : stored};
+  head.decode_bytes =
+      std::max({decoding, cmyk ? components + pixel : 0.0, markers.orientation != 1 ? 2.0 * pixel : 0.0});
+  constexpr double blocks = 8.0;  // a Huffman code has a bit or more, and each block one code
+  constexpr double block_pixels = 64.0;
+  if (!markers.arithmetic) head.byte_pixels = blocks * block_pixels;
+  return head;
 }
 
 Result<std::vector<std::uint8_t>> encode_jpeg(const Image& image, int quality) {

@@ -33,21 +33,42 @@ Image narrowed_to_grey(const Image& image) {
   return out;
 }
 
-}  // namespace
-
-Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels) {
-  const Handle handle{spng_ctx_new(0)};
-  if (!handle) return Error{ErrorCode::Unreadable, "the PNG decoder could not be started", {}};
+Result<spng_ihdr> read_header(spng_ctx* handle, ByteSpan bytes) {
+  if (handle == nullptr) return Error{ErrorCode::Unreadable, "the PNG decoder could not be started", {}};
   constexpr std::size_t max_chunk_bytes = 64U << 20;
-  spng_set_chunk_limits(handle.get(), max_chunk_bytes, max_chunk_bytes);
-  spng_set_crc_action(handle.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD);
-  if (const int code = spng_set_png_buffer(handle.get(), bytes.data(), bytes.size()); code != 0) {
+  spng_set_chunk_limits(handle, max_chunk_bytes, max_chunk_bytes);
+  spng_set_crc_action(handle, SPNG_CRC_ERROR, SPNG_CRC_DISCARD);
+  if (const int code = spng_set_png_buffer(handle, bytes.data(), bytes.size()); code != 0) {
     return png_error("the PNG cannot be read", code);
   }
   spng_ihdr header{};
-  if (const int code = spng_get_ihdr(handle.get(), &header); code != 0) {
-    return png_error("the PNG header is broken", code);
-  }
+  if (const int code = spng_get_ihdr(handle, &header); code != 0) return png_error("the PNG header is broken", code);
+  return header;
+}
+
+}  // namespace
+
+Result<ImageHead> png_head(ByteSpan bytes) {
+  const Handle handle{spng_ctx_new(0)};
+  const auto header = read_header(handle.get(), bytes);
+  if (!header) return header.error();
+  const bool deep = header->bit_depth > 8;
+  const bool plain_rgb = header->color_type == SPNG_COLOR_TYPE_TRUECOLOR;
+  constexpr double samples[] = {1.0, 0.0, 3.0, 1.0, 2.0, 0.0, 4.0};  // by type of colours
+  constexpr double most_inflation = 1032.0;                          // of what deflate packed
+  const double pixel_bits = samples[header->color_type] * header->bit_depth;
+  return ImageHead{.size = {header->width, header->height},
+                   .decode_bytes = deep        ? 8.0
+                                   : plain_rgb ? 3.0
+                                               : 4.0,  // deep: two copies with alpha
+                   .byte_pixels = most_inflation * 8.0 / pixel_bits};
+}
+
+Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels) {
+  const Handle handle{spng_ctx_new(0)};
+  const auto found = read_header(handle.get(), bytes);
+  if (!found) return found.error();
+  const spng_ihdr& header = *found;
   if (auto fits = check_image_size(header.width, header.height, max_pixels); !fits) return fits.error();
   spng_trns transparency{};
   const bool grey =

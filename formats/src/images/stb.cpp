@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The only file that names stb_image, compiled here with just the formats that nobody else of ours reads.
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -41,6 +43,36 @@ Result<StbHead> read_head(ByteSpan bytes) {
   return head;
 }
 
+// Bytes that stb asks for piece by piece. From memory it would take zeros for what is cut off.
+struct Source {
+  ByteSpan bytes;
+  std::size_t at = 0;
+  bool cut_off = false;
+};
+
+int read_some(void* user, char* out, int wanted) {
+  auto& source = *static_cast<Source*>(user);
+  constexpr int ahead = 128;  // so many it asks for as there may be; of anything else it needs each
+  const std::size_t left = source.bytes.size() - source.at;
+  const std::size_t count = std::min(left, static_cast<std::size_t>(wanted));
+  if (count == 0 || (wanted != ahead && count < static_cast<std::size_t>(wanted))) source.cut_off = true;
+  std::copy_n(source.bytes.begin() + static_cast<std::ptrdiff_t>(source.at), count, out);
+  source.at += count;
+  return static_cast<int>(count);
+}
+
+// Back, too. Beyond the end without complaint: some writers leave out what only fills the last row up.
+void skip_some(void* user, int count) {
+  auto& source = *static_cast<Source*>(user);
+  const auto target = static_cast<std::ptrdiff_t>(source.at) + count;
+  source.at = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(target, 0, std::ssize(source.bytes)));
+}
+
+int at_end(void* user) {
+  const auto& source = *static_cast<const Source*>(user);
+  return source.at >= source.bytes.size() ? 1 : 0;
+}
+
 struct Free {
   void operator()(stbi_uc* pixels) const noexcept { stbi_image_free(pixels); }
 };
@@ -52,9 +84,18 @@ Result<ImageHead> stb_head(ByteSpan bytes) {
   if (!head) return head.error();
   if (head->width <= 0 || head->height <= 0) return Error{ErrorCode::BadData, "the image has no pixels", {}};
   constexpr double gif = 9.0;  // frame, background and which pixels were drawn
-  const bool is_gif = image_mime_type(bytes) == "image/gif";
-  return ImageHead{{static_cast<std::uint32_t>(head->width), static_cast<std::uint32_t>(head->height)},
-                   is_gif ? gif : 2.0 * head->channels};
+  const std::string type = image_mime_type(bytes);
+  ImageHead result{.size = {head->width, head->height}, .decode_bytes = 2.0 * head->channels};
+  if (type == "image/gif") {
+    result.decode_bytes = gif;  // a frame may be smaller than the picture, so its bytes say nothing
+  } else if (type == "image/bmp") {
+    result.byte_pixels = 8.0;  // black and white
+  } else {
+    constexpr std::uint8_t packed = 8;
+    const bool plain = bytes[2] < packed;
+    result.byte_pixels = plain ? 8.0 / std::max<double>(bytes[16], 8.0) : 64.0;  // 128 of a grey in two bytes
+  }
+  return result;
 }
 
 Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels) {
@@ -62,11 +103,13 @@ Result<Image> decode_stb(ByteSpan bytes, std::uint64_t max_pixels) {
   if (!head) return head.error();
   auto [width, height, channels] = *head;
   if (auto fits = check_image_size(width, height, max_pixels); !fits) return fits.error();
-  const int size = static_cast<int>(bytes.size());
-  const std::unique_ptr<stbi_uc, Free> pixels{stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 0)};
-  if (!pixels) {
+  Source source{bytes};
+  const stbi_io_callbacks reading{read_some, skip_some, at_end};
+  const std::unique_ptr<stbi_uc, Free> pixels{
+      stbi_load_from_callbacks(&reading, &source, &width, &height, &channels, 0)};
+  if (!pixels || source.cut_off) {
     const char* reason = stbi_failure_reason();
-    if (reason != nullptr && std::string_view{reason} == "outofmem") return no_memory_for(width, height);
+    if (!pixels && reason != nullptr && std::string_view{reason} == "outofmem") return no_memory_for(width, height);
     return Error{ErrorCode::BadData, "the image data is damaged or cut off", {}};
   }
   Image image{

@@ -321,7 +321,7 @@ Result<LoadedMesh> read_assimp_in_process(const Input& input, const ReadOptions&
     }
     reason = importer.GetErrorString();
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::TooLarge, "asks for more memory than there is", input.name()};
+    return Error{ErrorCode::TooLarge, "asks for more memory than there is, or than a limit allows", input.name()};
   } catch (const std::exception& thrown) {
     reason = thrown.what();
   }

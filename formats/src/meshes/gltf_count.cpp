@@ -55,9 +55,28 @@ Chunks chunks_of(const Input& input) {
   return {head.size(), std::min(length, input.size() - head.size()), head.size() + length + chunk_head};
 }
 
+// Where the bytes of a buffer are.
+struct Buffer {
+  std::filesystem::path file{};  // empty = the glTF's own
+  std::uint64_t begin = 0;
+  std::uint64_t size_bytes = 0;  // those that are there
+  bool in_text = false;
+};
+
+constexpr std::uint64_t most_count = ReadOptions{}.max_triangles;  // and vertices
+constexpr std::uint64_t most_packing = 1024;                       // elements of a byte that any codec unpacks
+
+std::uint64_t capped_sum(std::uint64_t sum, std::uint64_t times, std::uint64_t count) {
+  if (count > 0 && times > (most_count - sum) / count) return most_count;
+  return sum + times * count;
+}
+
 class Counter {
  public:
-  Counter(const Input& input, const Json& root, const Chunks& chunks) : input_{input}, root_{root}, chunks_{chunks} {}
+  Counter(const Input& input, const Json& root, const Chunks& chunks) : input_{input}, root_{root}, chunks_{chunks} {
+    const Json& buffers = at(root, "buffers");
+    for (const Json& buffer : buffers) buffers_.push_back(find_buffer(buffer, buffers_.empty()));
+  }
 
   [[nodiscard]] MeshCount count() {
     std::map<std::uint64_t, std::uint64_t> uses;
@@ -72,6 +91,33 @@ class Counter {
   }
 
  private:
+  [[nodiscard]] Buffer find_buffer(const Json& json, bool first) const {
+    const std::string uri = text(json, "uri");
+    if (is_data(uri)) return {.size_bytes = uri.size() / 4 * 3, .in_text = true};
+    if (!uri.empty()) {
+      Buffer buffer{.file = find_beside(input_.folder(), uri).value_or(std::filesystem::path{})};
+      std::error_code fault;
+      const auto size = std::filesystem::file_size(buffer.file, fault);
+      if (!fault) buffer.size_bytes = size;
+      return buffer;
+    }
+    if (!first || chunks_.binary_begin == 0 || chunks_.binary_begin > input_.size()) return {};
+    const std::uint64_t rest = input_.size() - chunks_.binary_begin;
+    return {.begin = chunks_.binary_begin, .size_bytes = std::min(rest, number(json, "byteLength", 0))};
+  }
+
+  // What a view has of its buffer.
+  [[nodiscard]] Buffer bytes_of(std::uint64_t view_number) const {
+    const Json& view = element(at(root_, "bufferViews"), view_number);
+    const std::uint64_t number_of_buffer = number(view, "buffer", no_number);
+    if (number_of_buffer >= buffers_.size()) return {};
+    Buffer part = buffers_[number_of_buffer];
+    const std::uint64_t offset = std::min(number(view, "byteOffset", 0), part.size_bytes);
+    part.begin += offset;
+    part.size_bytes = std::min(number(view, "byteLength", 0), part.size_bytes - offset);
+    return part;
+  }
+
   void add_mesh(const Json& mesh, std::uint64_t times) {
     std::set<std::string> seen;  // primitives often share their vertices
     for (const Json& primitive : at(mesh, "primitives")) {
@@ -80,23 +126,53 @@ class Counter {
       const std::uint64_t mode = number(primitive, "mode", triangles);
       if (mode < triangles || mode > fan) continue;
       const Json& attributes = at(primitive, "attributes");
-      const std::uint64_t vertices = accessor_count(attributes, "POSITION");
-      const std::uint64_t corners =
-          at(primitive, "indices").is_null() ? vertices : accessor_count(primitive, "indices");
-      count_.triangles += times * (mode == triangles ? corners / 3 : corners - std::min<std::uint64_t>(corners, 2));
+      const std::uint64_t vertices = accessor_count(primitive, number(attributes, "POSITION", no_number), 3);
+      const std::uint64_t corners = at(primitive, "indices").is_null()
+                                        ? vertices
+                                        : accessor_count(primitive, number(primitive, "indices", no_number), 1);
+      count_.triangles = capped_sum(count_.triangles, times,
+                                    mode == triangles ? corners / 3 : corners - std::min<std::uint64_t>(corners, 2));
       std::string key;
       for (const auto& [name, accessor] : attributes.items()) {
         if (accessor.is_number_unsigned()) key += name + '=' + std::to_string(accessor.get<std::uint64_t>()) + ';';
       }
-      if (seen.insert(key).second) count_.vertices += times * vertices;
+      if (seen.insert(key).second) count_.vertices = capped_sum(count_.vertices, times, vertices);
       uvs_ = uvs_ || attributes.contains("TEXCOORD_0");
       normals_ = normals_ || attributes.contains("NORMAL");
       colors_ = colors_ || attributes.contains("COLOR_0");
     }
   }
 
-  [[nodiscard]] std::uint64_t accessor_count(const Json& object, const char* key) const {
-    return number(element(at(root_, "accessors"), number(object, key, no_number)), "count", 0);
+  // As many elements as there are bytes for, whatever is claimed.
+  [[nodiscard]] std::uint64_t accessor_count(const Json& primitive, std::uint64_t index,
+                                             std::uint64_t components) const {
+    const Json& accessor = element(at(root_, "accessors"), index);
+    return std::min(number(accessor, "count", 0), most_elements(primitive, accessor, components));
+  }
+  [[nodiscard]] std::uint64_t most_elements(const Json& primitive, const Json& accessor,
+                                            std::uint64_t components) const {
+    const std::uint64_t view_number = number(accessor, "bufferView", no_number);
+    if (const Json& draco = at(at(primitive, "extensions"), "KHR_draco_mesh_compression");
+        draco.is_object() && view_number == no_number) {
+      return most_packing * (bytes_of(number(draco, "bufferView", no_number)).size_bytes + 1);
+    }
+    constexpr std::uint64_t most_zeros = 1U << 24U;  // as in reading
+    if (view_number == no_number) return most_zeros;
+    const Json& view = element(at(root_, "bufferViews"), view_number);
+    if (const Json& packed = meshopt_of(view); packed.is_object()) return packed_count(packed);
+    const std::uint64_t type = number(accessor, "componentType", 0);
+    constexpr std::uint64_t first_short = 5122;
+    constexpr std::uint64_t last_short = 5123;
+    const std::uint64_t unit = type < first_short ? 1 : type <= last_short ? 2 : 4;
+    const std::uint64_t stride = number(view, "byteStride", unit * components);
+    return bytes_of(view_number).size_bytes / std::clamp<std::uint64_t>(stride, 1, unit * components);
+  }
+  [[nodiscard]] static const Json& meshopt_of(const Json& view) {
+    return at(at(view, "extensions"), "EXT_meshopt_compression");
+  }
+  [[nodiscard]] std::uint64_t packed_count(const Json& packed) const {
+    const std::uint64_t bytes = std::min(number(packed, "byteLength", 0), input_.size());
+    return std::min(number(packed, "count", 0), most_packing * (bytes + 1));
   }
 
   void add_image(const Json& image) {
@@ -106,29 +182,26 @@ class Counter {
     } else if (!uri.empty()) {
       if (auto file = find_beside(input_.folder(), uri)) count_.textures.push_back(std::move(*file));
     } else {
-      const Json& view = element(at(root_, "bufferViews"), number(image, "bufferView", no_number));
-      const std::uint64_t size_bytes = number(view, "byteLength", 0);
-      const std::uint64_t buffer = number(view, "buffer", no_number);
-      const bool here =
-          chunks_.binary_begin > 0 && buffer == 0 && text(element(at(root_, "buffers"), 0), "uri").empty();
-      if (here) {
-        count_.images.push_back({chunks_.binary_begin + number(view, "byteOffset", 0), size_bytes});
-      } else {
-        count_.other_image_bytes += size_bytes;
+      const Buffer part = bytes_of(number(image, "bufferView", no_number));
+      if (part.in_text) {
+        count_.other_image_bytes += part.size_bytes;
+      } else if (part.size_bytes > 0) {
+        count_.images.push_back({part.file, part.begin, part.size_bytes});
       }
     }
   }
 
   // First the file, its JSON and its buffers; then buffers, images and the mesh, whose arrays grow.
   [[nodiscard]] double reading_bytes() const {
-    double buffers = 0.0;
-    for (const Json& buffer : at(root_, "buffers")) buffers += static_cast<double>(number(buffer, "byteLength", 0));
     double unpacked = 0.0;
     for (const Json& view : at(root_, "bufferViews")) {
-      const Json& packed = at(at(view, "extensions"), "EXT_meshopt_compression");
-      unpacked +=
-          static_cast<double>(number(packed, "count", 0)) * static_cast<double>(number(packed, "byteStride", 0));
+      constexpr std::uint64_t longest_stride = 256;
+      const Json& packed = meshopt_of(view);
+      unpacked += static_cast<double>(packed_count(packed)) *
+                  static_cast<double>(std::min(number(packed, "byteStride", 0), longest_stride));
     }
+    double buffers = unpacked;
+    for (const Buffer& buffer : buffers_) buffers += static_cast<double>(buffer.size_bytes);
     double images = static_cast<double>(count_.other_image_bytes);
     double beside = 0.0;
     for (const InnerImage& image : count_.images) images += static_cast<double>(image.size_bytes);
@@ -141,16 +214,19 @@ class Counter {
     constexpr double triangle = 50.0;
     constexpr double vertex_growth = 2.5;
     const auto json = static_cast<double>(chunks_.json_bytes);
-    const double parsed = json * (chunks_.binary_begin > 0 ? json_growth : text_growth);
+    const bool data_in_text =
+        std::any_of(buffers_.begin(), buffers_.end(), [](const Buffer& buffer) { return buffer.in_text; });
+    const double parsed = json * (data_in_text || count_.other_image_bytes > 0 ? text_growth : json_growth);
     const double mesh = triangle * static_cast<double>(count_.triangles) +
                         vertex_growth * count_.vertex_bytes * static_cast<double>(count_.vertices);
     const double file = static_cast<double>(input_.size()) + unpacked;
-    return std::max(file + buffers + unpacked + parsed, buffers + unpacked + images + mesh) + beside;
+    return std::max(file + buffers + parsed, buffers + images + mesh) + beside;
   }
 
   const Input& input_;
   const Json& root_;
   const Chunks& chunks_;
+  std::vector<Buffer> buffers_;
   MeshCount count_;
   bool uvs_ = false, normals_ = false, colors_ = false;
 };

@@ -47,7 +47,7 @@ void parcel_fields(Archive& archive, Parcel& parcel) {
   archive.plain(end);
 }
 
-[[noreturn]] void run_child(std::FILE* file, const std::function<Result<LoadedMesh>()>& read) {
+[[noreturn]] void run_child(std::FILE* file, const std::string& name, const std::function<Result<LoadedMesh>()>& read) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   Parcel parcel;
   try {
@@ -58,6 +58,8 @@ void parcel_fields(Archive& archive, Parcel& parcel) {
     else
       parcel.error = result.error();
     parcel.warnings = std::move(result.warnings());
+  } catch (const std::bad_alloc&) {
+    parcel = {.error = {ErrorCode::TooLarge, "asks for more memory than there is, or than a limit allows", name}};
   } catch (const std::exception&) {
     ::_exit(3);
   }
@@ -122,7 +124,7 @@ Result<LoadedMesh> run_isolated(const Input& input, const Context& context,
   if (child < 0) {
     return Error{ErrorCode::Unreadable, std::string{"no process to read it in: "} + std::strerror(errno), input.name()};
   }
-  if (child == 0) run_child(file, read);
+  if (child == 0) run_child(file, input.name(), read);
   if (auto done = watch(child, input, context); !done) return done.error();
   std::fseek(file, 0, SEEK_END);
   const long size = std::ftell(file);

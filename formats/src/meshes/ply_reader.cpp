@@ -209,6 +209,16 @@ bool has(const Element& element, Role role) {
                      [&](const Property& p) { return p.role == role; });
 }
 
+// That the rest of the file can hold.
+std::uint64_t most_elements(const Header& header, const Element& element, const Input& input) {
+  std::uint64_t least = 0;
+  for (const Property& p : element.properties) {
+    least += header.encoding == Encoding::Text ? 2 : size_bytes(p.count_type.value_or(p.type));
+  }
+  const std::uint64_t rest = input.size() - std::min(input.size(), header.size_bytes) + 1;
+  return least > 0 ? rest / least : 0;
+}
+
 class PlyReader {
  public:
   PlyReader(const Input& input, const ReadOptions& options, const Header& header)
@@ -258,18 +268,11 @@ class PlyReader {
 
 // A count that the rest of the file cannot hold is refused before any memory is taken for it.
 Status PlyReader::check_counts(const Element& element) const {
-  std::uint64_t least = 0;
-  for (const Property& p : element.properties) {
-    least += header_.encoding == Encoding::Text ? 2 : size_bytes(p.count_type.value_or(p.type));
-  }
-  const std::uint64_t rest = input_.size() - header_.size_bytes + 1;
-  if (least > 0 && element.count > rest / least) {
-    return Error{ErrorCode::BadData,
-                 "claims " + std::to_string(element.count) + " of \"" + element.name +
-                     "\", more than its bytes can hold; it is cut off or damaged",
-                 input_.name()};
-  }
-  return Done{};
+  if (element.count <= most_elements(header_, element, input_)) return Done{};
+  return Error{ErrorCode::BadData,
+               "claims " + std::to_string(element.count) + " of \"" + element.name +
+                   "\", more than its bytes can hold; it is cut off or damaged",
+               input_.name()};
 }
 
 template <class Body>
@@ -527,12 +530,13 @@ std::uint64_t triangles_of(const Element& faces, std::uint64_t list_bytes) {
 
 Result<MeshCount> count_ply(const Input& input, const Context& context) {
   LineReader lines{input, context};
-  const auto header = read_header(lines);
+  auto header = read_header(lines);
   if (!header) return header.error();
   MeshCount count;
   std::uint64_t rest = input.size() - std::min(input.size(), header->size_bytes);
   bool per_corner = false;
-  for (const Element& element : header->elements) {
+  for (Element& element : header->elements) {
+    element.count = std::min(element.count, most_elements(*header, element, input));
     if (element.name == "vertex") {
       count.vertices = element.count;
       count.vertex_bytes = 12U + (has(element, Role::U) ? 8U : 0U) + (has(element, Role::Nx) ? 12U : 0U) +
@@ -544,6 +548,8 @@ Result<MeshCount> count_ply(const Input& input, const Context& context) {
       const bool alone = header->elements.size() == 2 && header->encoding != Encoding::Text;
       count.triangles = alone ? triangles_of(element, rest) : element.count;
       per_corner = has(element, Role::CornerUv);
+    } else if (element.name == "tristrips" && !element.properties.empty()) {
+      count.triangles = rest / (header->encoding == Encoding::Text ? 2 : size_bytes(element.properties.front().type));
     }
   }
   const auto triangles = static_cast<double>(count.triangles);

@@ -31,11 +31,15 @@ double expected_tile_bytes(const OutcropSize& size, std::span<const Photograph> 
 
 std::string megabytes(double bytes) { return std::to_string(static_cast<std::uint64_t>(std::ceil(bytes * 1e-6))); }
 
-Error too_little(const Context& context, const std::string& of_what, double needed) {
+Error too_little(const Context& context, const std::string& of_what, const std::string& enough) {
   return {ErrorCode::TooLarge,
           "a limit of " + megabytes(static_cast<double>(context.max_memory_bytes)) +
-              " MB on memory is too little for " + of_what + ": " + megabytes(needed) + "MB will do",
+              " MB on memory is too little for " + of_what + ": " + enough,
           {}};
+}
+
+Error too_little(const Context& context, const std::string& of_what, double needed) {
+  return too_little(context, of_what, megabytes(needed) + "MB will do");
 }
 
 double color_bytes(const Photograph& photograph) {
@@ -58,10 +62,9 @@ double photograph_bytes(const Photograph& photograph, const OutcropOptions& opti
   return most + worker_bytes;
 }
 
-}  // namespace
-
+// What is needed is not less than reading the mesh took.
 Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photograph> photographs,
-                               const OutcropOptions& options, const Context& context, double reading_bytes) {
+                               const OutcropOptions& options, const Context& context, double reading_bytes = 0.0) {
   const unsigned workers = workers_of(context);
   if (context.max_memory_bytes == 0) {
     const auto images = static_cast<unsigned>(std::clamp<std::size_t>(photographs.size(), 1, workers));
@@ -97,6 +100,21 @@ Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photogra
       std::clamp(room_of_each / tile, 1.0, static_cast<double>(std::max(1U, workers / plan.photograph_workers))));
   plan.fewer = plan.geometry_workers < workers || plan.tile_workers < workers / plan.photograph_workers ||
                plan.photograph_workers < std::min<std::size_t>(workers, photographs.size());
+  return plan;
+}
+
+}  // namespace
+
+Result<MemoryPlan> plan_memory_of(const Mesh& mesh, const OutcropOptions& options, const Context& context,
+                                  std::vector<Warning>& warnings) {
+  std::vector<Photograph> photographs;
+  std::vector<TextureInfo> images;
+  for (const Texture& texture : mesh.textures) {
+    photographs.push_back(look_at(texture, warnings));
+    images.push_back(photographs.back().info);
+  }
+  auto plan = plan_memory(outcrop_size(mesh), photographs, options, context);
+  if (plan) plan->images = std::move(images);
   return plan;
 }
 
@@ -144,26 +162,46 @@ std::vector<Photograph> photographs_of(const MeshCount& count, const Input& inpu
     photographs.push_back(look_at({.name = file.string(), .path = file.string()}, told_when_used));
   }
   for (const InnerImage& image : count.images) {
-    photographs.push_back(look_inside(input, image.offset, image.size_bytes));
+    const auto other =
+        image.file.empty() ? Result<Input>{input} : Input::open(image.file, ReadOptions{}.max_file_bytes);
+    if (other) photographs.push_back(look_inside(*other, image.offset, image.size_bytes));
   }
   if (count.other_image_bytes > 0) photographs.push_back({.kept_bytes = count.other_image_bytes});
   return photographs;
 }
 
+// Of kinds whose triangles are not counted before they are read: what that takes for a byte of the file, at least, and
+// what is enough for most.
+struct Growth {
+  double least = 1.0;
+  double most = 12.0;
+};
+
+Growth growth_of(ReadFunction reader) {
+  if (reader == read_gltf) return {3.0, 12.0};  // of the JSON, which is looked at
+  if (reader == read_cityjson) return {10.0, 25.0};
+  if (reader == read_citygml) return {4.0, 12.0};
+  return {};
+}
+
+Status file_fits(const Input& input, ReadFunction reader, const Context& context) {
+  const Growth growth = growth_of(reader);
+  const auto read = static_cast<double>(reader == read_gltf ? gltf_json_bytes(input) : input.size());
+  if (program_bytes + growth.least * read <= static_cast<double>(context.max_memory_bytes)) return Done{};
+  const auto size = static_cast<double>(input.size());
+  return too_little(context, "a file of " + megabytes(size) + " MB",
+                    "about " + megabytes(program_bytes + growth.most * size) + "MB may do");
+}
+
 Status fits(const Input& input, const TilesetOptions& options, const Context& context) {
-  const std::string kind = input.extension();
-  const bool gltf = kind == ".glb" || kind == ".gltf";
-  if (gltf || (kind != ".obj" && kind != ".ply")) {
-    // What reading, or looking at the JSON, takes at least; and what is enough for whatever it may hold.
-    constexpr double most_growth = 12.0;
-    const auto bytes = static_cast<double>(gltf ? 3 * gltf_json_bytes(input) : input.size());
-    if (program_bytes + bytes > static_cast<double>(context.max_memory_bytes)) {
-      return too_little(context, "a file of " + megabytes(static_cast<double>(input.size())) + " MB",
-                        program_bytes + most_growth * static_cast<double>(input.size()));
-    }
-    if (!gltf) return Done{};
+  const ReadFunction reader = find_reader(input);
+  const bool counted = reader == read_gltf || reader == read_ply || reader == read_obj;
+  if (reader != read_ply && reader != read_obj) {
+    if (Status status = file_fits(input, reader, context); !status || !counted) return status;
   }
-  const auto count = gltf ? count_gltf(input) : kind == ".ply" ? count_ply(input, context) : count_obj(input, context);
+  const auto count = reader == read_gltf  ? count_gltf(input)
+                     : reader == read_ply ? count_ply(input, context)
+                                          : count_obj(input, context);
   if (!count) return count.error();
   const OutcropSize size{count->triangles, count->vertices, count->vertex_bytes};
   const auto plan = plan_memory(size, photographs_of(*count, input), options.pyramid, context, count->reading_bytes);

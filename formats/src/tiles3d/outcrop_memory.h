@@ -21,17 +21,17 @@ struct Photograph {
 struct MemoryPlan {
   unsigned geometry_workers = 1;
   unsigned photograph_workers = 1;
-  unsigned tile_workers = 1;  // on the tiles of each photograph
-  bool fewer = false;         // than asked for, because of the limit
-  double kept_bytes = 0.0;    // beside the triangles: the program and images that are in no file of their own
-  double color_bytes = 0.0;   // a pixel
+  unsigned tile_workers = 1;        // on the tiles of each photograph
+  bool fewer = false;               // than asked for, because of the limit
+  double kept_bytes = 0.0;          // beside the triangles: the program and images that are in no file of their own
+  double color_bytes = 0.0;         // a pixel
+  std::vector<TextureInfo> images;  // of the mesh: sizes told by their heads, 0 where they cannot be used
 };
 
-// As many workers as the limit allows. TooLarge if it does not allow one: names what is needed, rounded up, with which
-// it will do, which is not less than reading the mesh took.
-[[nodiscard]] Result<MemoryPlan> plan_memory(const OutcropSize& size, std::span<const Photograph> photographs,
-                                             const OutcropOptions& options, const Context& context,
-                                             double reading_bytes = 0.0);
+// As many workers as the limit allows; warns of images that cannot be used. TooLarge if the limit does not allow one:
+// names what is needed, rounded up, with which it will do.
+[[nodiscard]] Result<MemoryPlan> plan_memory_of(const Mesh& mesh, const OutcropOptions& options, const Context& context,
+                                                std::vector<Warning>& warnings);
 
 // How many tiles of several images may be made at once: each loads its images' levels. TooLarge if not one.
 [[nodiscard]] Result<unsigned> joined_at_once(const OutcropPyramid& pyramid, std::span<const std::uint32_t> joined,

@@ -12,39 +12,11 @@ namespace {
 constexpr std::uint64_t most_file_bytes = 1ULL << 31;
 constexpr std::size_t head_bytes = 1U << 18;  // where a header is looked for first
 
-std::uint32_t big_endian(ByteSpan bytes, std::size_t at) {
-  return std::uint32_t{bytes[at]} << 24U | std::uint32_t{bytes[at + 1]} << 16U | std::uint32_t{bytes[at + 2]} << 8U |
-         bytes[at + 3];
-}
-
-constexpr double plain_decode_bytes = 8.0;  // two copies with alpha
-
-// Nothing if it is no image's, or if the head is too short.
-std::optional<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes, const std::string& name) {
-  const std::string type = image_mime_type(bytes);
-  constexpr std::size_t png_head = 26;
-  if (type == "image/png" && bytes.size() >= png_head) {
-    const bool deep = bytes[24] > 8;
-    const bool plain_rgb = bytes[25] == 2;
-    const double pixel = deep ? plain_decode_bytes : plain_rgb ? 3.0 : 4.0;
-    return Photograph{{big_endian(bytes, 16), big_endian(bytes, 20), file_bytes}, pixel};
-  }
-  if (type != "image/jpeg") {
-    const bool tga = Input::from_bytes({}, name).extension() == ".tga";
-    if (type.empty() && !tga) return {};
-    const auto head = type == "image/webp" ? webp_head(bytes) : stb_head(bytes);
-    if (!head) return {};
-    return Photograph{{head->size.x, head->size.y, file_bytes}, head->decode_bytes};
-  }
-  const auto size = jpeg_size(bytes);
-  if (!size) return {};
-  return Photograph{{size->x, size->y, file_bytes}, jpeg_decode_bytes(bytes)};
-}
-
-Result<Photograph> by_decoding(ByteSpan bytes, const std::string& name) {
-  const auto image = decode_image(bytes, name);
-  if (!image) return image.error();
-  return Photograph{{image->width, image->height, bytes.size()}, plain_decode_bytes};
+Result<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes, const std::string& name) {
+  constexpr std::uint64_t most_pixels = 1ULL << 28;  // as when it is decoded
+  const auto head = image_head(bytes, file_bytes, name, most_pixels);
+  if (!head) return head.error();
+  return Photograph{{head->size.x, head->size.y, file_bytes}, head->decode_bytes};
 }
 
 Result<Photograph> measure(const Texture& texture) {
@@ -55,7 +27,7 @@ Result<Photograph> measure(const Texture& texture) {
   if (texture.encoded && !texture.encoded->empty()) {
     const Bytes& bytes = *texture.encoded;
     auto found = from_head(bytes, bytes.size(), name_of(texture));
-    if (!found) return by_decoding(bytes, name_of(texture));
+    if (!found) return found.error();
     found->kept_bytes = bytes.size();
     return *found;
   }
@@ -67,8 +39,7 @@ Result<Photograph> measure(const Texture& texture) {
   if (const auto found = from_head(head, input->size(), texture.path)) return *found;
   const auto bytes = input->read_all();
   if (!bytes) return bytes.error();
-  if (const auto found = from_head(*bytes, input->size(), texture.path)) return *found;
-  return by_decoding(*bytes, texture.path);
+  return from_head(*bytes, input->size(), texture.path);
 }
 
 }  // namespace
@@ -87,14 +58,13 @@ Photograph look_at(const Texture& texture, std::vector<Warning>& warnings) {
 }
 
 Photograph look_inside(const Input& input, std::uint64_t offset, std::uint64_t size_bytes) {
-  std::optional<Photograph> found;
+  Photograph photograph;
   for (const std::uint64_t most : {std::uint64_t{head_bytes}, size_bytes}) {
-    if (found || offset > input.size()) break;
+    if (photograph.info.width_px > 0 || offset > input.size()) break;
     Bytes head(std::min({most, size_bytes, input.size() - offset}));
     head.resize(input.read(offset, head));
-    found = from_head(head, size_bytes, {});
+    if (const auto found = from_head(head, size_bytes, {})) photograph = *found;
   }
-  Photograph photograph = found.value_or(Photograph{});
   photograph.kept_bytes = size_bytes;
   return photograph;
 }

@@ -84,7 +84,6 @@ class OutcropWriter {
   void clean(const fs::path& folder, bool tiles) const;
   void leave_no_trace() const;
   void sort_tiles();
-  [[nodiscard]] Status plan(const Mesh& mesh);
   [[nodiscard]] std::vector<std::uint32_t> largest_first() const;
   [[nodiscard]] Status write_photograph(std::uint32_t segment);
   [[nodiscard]] Result<Image> photograph_of(std::uint32_t texture);
@@ -113,7 +112,6 @@ class OutcropWriter {
   MemoryPlan plan_;
   std::shared_ptr<const OutcropPyramid> pyramid_;
   std::vector<Texture> textures_;
-  std::vector<TextureInfo> infos_;
   std::vector<std::map<std::uint32_t, std::vector<std::uint32_t>>> alone_;  // per segment: tiles of each level
   std::vector<std::vector<std::uint8_t>> joined_levels_;  // per segment and level: a joined tile needs its image
   std::vector<std::uint32_t> joined_;                     // tiles of several segments, or without texture
@@ -333,7 +331,7 @@ bool OutcropWriter::photograph_is_done(std::uint32_t segment) const {
 // White, as faces without one are, where it is damaged. What was whole when it was measured and is gone now is no
 // damage, nor is what memory does not do for.
 Result<Image> OutcropWriter::photograph_of(std::uint32_t texture) {
-  const TextureInfo& info = infos_[texture];
+  const TextureInfo& info = plan_.images[texture];
   const Stopwatch watch{mutex_, report_.decode_seconds};
   auto decoded = [&]() -> Result<Image> {
     try {
@@ -454,29 +452,18 @@ Status OutcropWriter::finish() {
   return Done{};
 }
 
-// Sizes of all images, from their heads, and how many workers there may be.
-Status OutcropWriter::plan(const Mesh& mesh) {
-  std::vector<Photograph> photographs;
-  for (const Texture& texture : mesh.textures) {
-    photographs.push_back(look_at(texture, warnings_));
-    infos_.push_back(photographs.back().info);
-  }
-  auto plan = plan_memory(outcrop_size(mesh), photographs, options_.pyramid, context_);
-  if (!plan) return plan.error();
-  plan_ = *plan;
-  report_.geometry_workers = plan_.geometry_workers;
-  report_.photograph_workers = plan_.photograph_workers;
-  report_.fewer_workers = plan_.fewer;
-  return Done{};
-}
-
 Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   report_.source_triangles = mesh.triangle_count();
   report_.degenerate_triangles = degenerate_triangle_count(mesh);
   if (report_.degenerate_triangles == report_.source_triangles) {
     return Error{ErrorCode::BadData, "no triangle of the outcrop has an area", ""};
   }
-  if (Status status = plan(mesh); !status) return status.error();
+  auto plan = plan_memory_of(mesh, options_.pyramid, context_, warnings_);
+  if (!plan) return plan.error();
+  plan_ = std::move(*plan);
+  report_.geometry_workers = plan_.geometry_workers;
+  report_.photograph_workers = plan_.photograph_workers;
+  report_.fewer_workers = plan_.fewer;
   const auto record = record_build(mesh, options_, context_);
   if (!record) return record.error();
   textures_ = mesh.textures;
@@ -487,7 +474,7 @@ Result<TilesetReport> OutcropWriter::write(Mesh mesh) {
   ::clock_gettime(CLOCK_MONOTONIC, &before);
   Context building = context_;
   building.max_workers = plan_.geometry_workers;
-  auto pyramid = OutcropPyramid::build(std::move(mesh), infos_, options_.pyramid, building);
+  auto pyramid = OutcropPyramid::build(std::move(mesh), plan_.images, options_.pyramid, building);
   ::clock_gettime(CLOCK_MONOTONIC, &after);
   if (!pyramid) {
     leave_no_trace();

@@ -196,7 +196,19 @@ TEST_CASE("A photograph that is missing, empty, cut off or no image leaves its f
   write_bytes(folder / "cut.jpg", half_of(*jpeg));
   write_bytes(folder / "cut.png", half_of(*png));
   write_bytes(folder / "head.jpg", {jpeg->begin(), jpeg->begin() + 30});
-  for (const char* name : {"missing.jpg", "empty.jpg", "text.jpg", "cut.jpg", "cut.png", "head.jpg"}) {
+  std::vector<std::uint8_t> wide = *png;
+  std::fill_n(wide.begin() + 16, 8, std::uint8_t{0x7F});  // 2139062143 pixels each way
+  write_bytes(folder / "wide.png", wide);
+  std::vector<std::uint8_t> frame{'G', 'I', 'F', '8', '9', 'a', 255, 255, 255, 255, 0, 0, 0};
+  write_bytes(folder / "wide.gif", frame);
+  std::vector<std::uint8_t> plain(18 + 64 * 64 * 3 - 50, 90);  // 50 bytes are missing
+  std::fill_n(plain.begin(), 18, std::uint8_t{0});
+  plain[2] = 2;
+  plain[12] = plain[14] = 64;
+  plain[16] = 24;
+  write_bytes(folder / "cut.tga", plain);
+  for (const char* name :
+       {"missing.jpg", "empty.jpg", "text.jpg", "cut.jpg", "cut.png", "head.jpg", "wide.png", "wide.gif", "cut.tga"}) {
     INFO(name);
     const Mesh mesh = grid_with(folder / name);
     const auto written = write_outcrop(mesh, folder / "tiles", options());
