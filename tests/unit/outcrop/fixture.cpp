@@ -14,7 +14,7 @@ namespace lodestone::test {
 
 const Mesh& small_cliff() {
   static const Mesh mesh = [] {
-    GenerateOptions options{.triangles = 12'000, .textures = 3, .texture_size_px = 256, .seed = 5, .charts = 6};
+    GenerateOptions options{.triangles = 8'000, .textures = 3, .texture_size_px = 256, .seed = 5, .charts = 6};
     auto made = generate_outcrop(options);
     REQUIRE(made);
     return std::move(*made);

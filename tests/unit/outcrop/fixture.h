@@ -10,7 +10,7 @@
 
 namespace lodestone::test {
 
-// A small generated cliff with pixels, made once: 12,000 triangles, 3 images of 256², 6 charts.
+// A small generated cliff with pixels, made once: 8,000 triangles, 3 images of 256², 6 charts.
 [[nodiscard]] const Mesh& small_cliff();
 [[nodiscard]] std::vector<TextureInfo> texture_sizes(const Mesh& mesh);
 // Tiles of a few kB, so that there are several levels.

@@ -105,6 +105,7 @@ TEST_CASE("Between tiles of unequal levels no sky shows through") {
   REQUIRE(pyramid);
   const Box& box = (*pyramid)->bounds();
   render::RenderOptions options{.width_px = 640, .height_px = 480, .supersample = 1};
+  TilePager pager{*pyramid};
   std::size_t without_skirts = 0;
   for (const int side : {-1, 1}) {
     View view;
@@ -112,7 +113,7 @@ TEST_CASE("Between tiles of unequal levels no sky shows through") {
     options.camera.eye_m = (*pyramid)->origin() + view.eye;
     options.camera.target_m = (*pyramid)->origin() + box.center() + glm::dvec3{0.2 * box.size().x * side, 0.0, 0.0};
     const auto picture_at = [&](double error_px, bool skirts) {
-      TilePager pager{*pyramid, {.error_px = error_px}};
+      pager.set_error_px(error_px);
       View around = view;  // chosen by distance alone: tiles of several levels side by side
       around.forward = glm::normalize(*options.camera.target_m - *options.camera.eye_m);
       std::vector<const Mesh*> tiles;
