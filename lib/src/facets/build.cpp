@@ -58,8 +58,9 @@ class Builder {
         pieces_(mesh_),
         slides_(mesh_, pieces_),
         planner_(mesh_),
-        parts_(mesh_, pieces_),
-        scraps_(mesh_),
+        around_(mesh_),
+        parts_(mesh_, pieces_, around_),
+        scraps_(mesh_, around_),
         block_(mesh_),
         stepped_(mesh_, block_),
         crossings_(mesh_, parts_),
@@ -128,6 +129,7 @@ class Builder {
   Pieces pieces_;
   SlideJudge slides_;
   Planner planner_;
+  Surroundings around_;
   PartFinder parts_;
   ScrapFinder scraps_;
   Block block_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -61,6 +62,15 @@ struct FacetMesh {
     for (const std::uint32_t p : faces[f].point)
       sum += (p + 1ULL) * 0x9E3779B97F4A7C15U + version[p] * 0xC2B2AE3D27D4EB4FU;
     return sum == 0 ? 1 : sum;
+  }
+  // Changes when one of its corners moves.
+  [[nodiscard]] std::uint64_t shape_of(FaceId f) const noexcept {
+    std::uint64_t hash = 1;
+    for (const std::uint32_t p : faces[f].point) {
+      for (int axis = 0; axis < 3; ++axis)
+        hash = (hash ^ std::bit_cast<std::uint32_t>(place[p][axis])) * 0x9E3779B97F4A7C15U ^ (hash >> 29U);
+    }
+    return hash;
   }
 };
 

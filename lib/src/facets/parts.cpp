@@ -21,8 +21,8 @@ constexpr double look_ahead = 4096.0;  // times the price: so far costs are foun
 
 }  // namespace
 
-PartFinder::PartFinder(const FacetMesh& mesh, const Pieces& pieces)
-    : mesh_(mesh), pieces_(pieces), around_(mesh), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
+PartFinder::PartFinder(const FacetMesh& mesh, const Pieces& pieces, Surroundings& around)
+    : mesh_(mesh), pieces_(pieces), around_(around), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
   corners_.resize(mesh.point_count());
   middles_.resize(std::bit_ceil(mesh.point_count() / 2 + 1));
   measured_.resize(mesh.point_count(), 0);
@@ -96,30 +96,19 @@ bool PartFinder::closes_opening(double limit_m) const {
   return 2.0 * open > whole;
 }
 
-// Changes when one of its corners moves.
-std::uint64_t PartFinder::shape_of(FaceId f) const {
-  std::uint64_t hash = 1;
-  for (const std::uint32_t p : mesh_.faces[f].point) {
-    const glm::vec3& at = mesh_.place[p];
-    for (int axis = 0; axis < 3; ++axis)
-      hash = (hash ^ std::bit_cast<std::uint32_t>(at[axis])) * 0x9E3779B97F4A7C15U ^ (hash >> 29U);
-  }
-  return hash;
-}
-
 // As long as neither the place nor what it is nearest to has moved, what was found before holds: what is left of the
 // rest comes nearer rarely.
 bool PartFinder::holds(const Sample& known, const glm::vec3& at, double limit_m) const {
   if (known.at != at) return false;
   if (known.face == none) return known.distance_m >= limit_m;
-  return mesh_.faces[known.face].live && part_of_[known.face] != id_ && shape_of(known.face) == known.shape;
+  return mesh_.faces[known.face].live && part_of_[known.face] != id_ && mesh_.shape_of(known.face) == known.shape;
 }
 
 // How far the place is from the rest, infinite if there is nothing within the limit.
 double PartFinder::sample(const glm::vec3& at, double limit_m, Sample& known) {
   if (!holds(known, at, limit_m)) {
     const Surroundings::Nearest found = around_.nearest(glm::dvec3{at}, id_, limit_m, last_nearest_);
-    known = {at, found.face, found.face == none ? 0 : shape_of(found.face),
+    known = {at, found.face, found.face == none ? 0 : mesh_.shape_of(found.face),
              found.face == none ? limit_m : found.distance_m};
   }
   if (known.face == none) return infinity;
@@ -138,22 +127,19 @@ void PartFinder::sample_corners(double limit_m) {
     around_.nearest(queries_, id_);
     for (std::size_t i = 0; i < queries_.size(); ++i) {
       const auto& [at, squared_m, face] = queries_[i];
-      corners_[query_points_[i]] = {at, face, face == none ? 0 : shape_of(face), std::sqrt(squared_m)};
+      corners_[query_points_[i]] = {at, face, face == none ? 0 : mesh_.shape_of(face), std::sqrt(squared_m)};
     }
     queries_.clear();
     query_points_.clear();
   };
-  const auto& hint = mesh_.faces[last_nearest_].point;
   for (const FaceId f : part_.faces) {
     for (const std::uint32_t p : mesh_.faces[f].point) {
       if (asked_[p] == measurement_) continue;
       asked_[p] = measurement_;
       const glm::vec3& at = mesh_.place[p];
       if (holds(corners_[p], at, limit_m)) continue;
-      const double hint_m2 =
-          squared_distance_to_triangle(glm::dvec3{at}, mesh_.at(hint[0]), mesh_.at(hint[1]), mesh_.at(hint[2]));
-      const bool near = hint_m2 < limit_m * limit_m;
-      queries_.push_back({at, near ? hint_m2 : limit_m * limit_m, near ? last_nearest_ : none});
+      queries_.push_back({at, limit_m * limit_m});
+      around_.hint(queries_.back(), last_nearest_);
       query_points_.push_back(p);
       if (queries_.size() == most_queries) ask();
     }

@@ -28,7 +28,7 @@ std::uint32_t split_by_points(const FacetMesh& mesh, std::vector<std::uint32_t>&
 // measured again before the price is near.
 class PartFinder {
  public:
-  PartFinder(const FacetMesh& mesh, const Pieces& pieces);
+  PartFinder(const FacetMesh& mesh, const Pieces& pieces, Surroundings& around);
 
   // To be called when faces may have been sewn to other parts.
   void split();
@@ -65,7 +65,6 @@ class PartFinder {
     std::uint64_t shape = 0;                                // of that face
     double distance_m = 0.0;
   };
-  [[nodiscard]] std::uint64_t shape_of(FaceId f) const;
   [[nodiscard]] bool holds(const Sample& known, const glm::vec3& at, double limit_m) const;
   [[nodiscard]] double sample(const glm::vec3& at, double limit_m, Sample& known);
   void sample_corners(double limit_m);
@@ -76,7 +75,7 @@ class PartFinder {
 
   const FacetMesh& mesh_;
   const Pieces& pieces_;
-  Surroundings around_;
+  Surroundings& around_;
   std::vector<std::uint32_t> part_of_;      // per face
   std::vector<std::vector<FaceId>> parts_;  // faces, ascending
   std::optional<std::uint64_t> edits_;      // there had been when they were found

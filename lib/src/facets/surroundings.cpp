@@ -48,9 +48,9 @@ void Surroundings::plant(Grove& grove) const {
 }
 
 void Surroundings::update(const std::vector<std::vector<FaceId>>& parts, const std::vector<std::uint32_t>& part_of) {
+  part_of_ = &part_of;
   if (edits_ == mesh_.edits) return;
   edits_ = mesh_.edits;
-  part_of_ = &part_of;
   state_.resize(mesh_.faces.size(), 0);
   std::size_t live_count = 0;
   std::size_t young_count = 0;
@@ -129,6 +129,12 @@ Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t p
     });
   }
   return face == none ? Nearest{} : Nearest{std::sqrt(least), face};
+}
+
+void Surroundings::hint(Query& query, FaceId face) const {
+  const auto& p = mesh_.faces[face].point;
+  const double d2 = squared_distance_to_triangle(glm::dvec3{query.at}, mesh_.at(p[0]), mesh_.at(p[1]), mesh_.at(p[2]));
+  if (d2 < query.squared_m) query = {query.at, d2, face};
 }
 
 void Surroundings::nearest(std::span<Query> queries, std::uint32_t part) const {

@@ -17,8 +17,8 @@ class Surroundings {
  public:
   explicit Surroundings(const FacetMesh& mesh) : mesh_(mesh) {}
 
-  // To be called when the mesh has changed. Faces ascending by part; `part_of`, per face, must live as long as it is
-  // asked for.
+  // To be called when the mesh or what counts as a part has changed. Faces ascending by part; `part_of`, per face, must
+  // live as long as it is asked for.
   void update(const std::vector<std::vector<FaceId>>& parts, const std::vector<std::uint32_t>& part_of);
 
   struct Nearest {
@@ -31,9 +31,11 @@ class Surroundings {
   // The same for many places that lie together, in one go.
   struct Query {
     glm::vec3 at{0.0F};
-    double squared_m = 0.0;  // before: of the limit, or of the distance from `face`
+    double squared_m = 0.0;  // before: of the limit
     FaceId face = none;
   };
+  // Tells a face of another part that is likely near.
+  void hint(Query& query, FaceId face) const;
   void nearest(std::span<Query> queries, std::uint32_t part) const;
 
   // Whether a face of another part, before or behind, covers p when one looks along `across`, a unit vector. The hints,

@@ -41,7 +41,11 @@ struct Scene {
   explicit Scene(const std::vector<Placed>& all) : source(boxes(all)) {
     mesh = make_facet_mesh(source, {}, degenerate);
     kinds.emplace(mesh);
-    kinds->update(PartFinder{mesh, Pieces{mesh}}.parts());
+    update();
+  }
+  void update() {
+    Surroundings around{mesh};
+    kinds->update(PartFinder{mesh, Pieces{mesh}, around}.parts());
   }
   Mesh source;
   std::vector<FaceId> degenerate;
@@ -66,7 +70,7 @@ TEST_CASE("a part that has strayed from the source does not follow one that has 
   Scene scene{{{plank, {0, 0, 0}}, {plank, {5, 0, 0}}}};
   REQUIRE(scene.kinds->follows(scene.mesh.faces[12]));
   scene.mesh.deviation_m[scene.mesh.faces[12].point[0]] = 0.01F;
-  scene.kinds->update(PartFinder{scene.mesh, Pieces{scene.mesh}}.parts());
+  scene.update();
   CHECK_FALSE(scene.kinds->follows(scene.mesh.faces[12]));
 }
 

@@ -15,10 +15,11 @@ void add_quad(Mesh& mesh, VertexId a, VertexId b, VertexId c, VertexId d) {
 }
 
 struct Scene {
-  explicit Scene(const Mesh& mesh) : source(mesh), facets(make_facet_mesh(source, {}, degenerate)) {}
+  explicit Scene(const Mesh& mesh) : source(mesh), facets(make_facet_mesh(source, {}, degenerate)), around(facets) {}
   Mesh source;
   std::vector<FaceId> degenerate;
   FacetMesh facets;
+  facets::Surroundings around;
 };
 
 Mesh wall_of_one_material() {
@@ -35,7 +36,7 @@ TEST_CASE("a fin that hangs on an edge of its wall can go; the wall and the pane
   mesh.vertices.positions.insert(mesh.vertices.positions.end(), {{5, -0.03F, 2}, {4, -0.03F, 2}});
   add_quad(mesh, 4, 5, first, first + 1);
   Scene scene{mesh};
-  ScrapFinder scraps{scene.facets};
+  ScrapFinder scraps{scene.facets, scene.around};
   CHECK(scraps.find(2e-6).empty());
   const auto found = scraps.find(1e-2);
   REQUIRE(found.size() == 1);
@@ -53,7 +54,7 @@ TEST_CASE("what closes a hole of the wall is no scrap at any price, nor is a par
                                  {{1, -0.01F, 1}, {1.1F, -0.01F, 1}, {1.1F, -0.01F, 2}, {1, -0.01F, 2}});
   add_quad(mesh, first, first + 1, first + 2, first + 3);
   Scene scene{mesh};
-  CHECK(ScrapFinder{scene.facets}.find(1e6).empty());
+  CHECK(ScrapFinder{scene.facets, scene.around}.find(1e6).empty());
 }
 
 }  // namespace
