@@ -57,7 +57,8 @@ struct OutcropOptions {
   /// Width and height of textures from one level to the next; 0 = `ratio` as in the paper (3.4), or 0.5 if that is 0.
   double texture_ratio = 0.0;
   /// Bytes of a tile that splitting and merging aim at, V_t of equations 1 and 2; 0 = 1/64 of the whole, within 128 kB
-  /// and 1 MB. It is shared out between geometry and texture as the model's bytes are.
+  /// and 1 MB. It is shared out between geometry and texture as the model's bytes are. The root, of which all is read
+  /// before anything shows, is made of no more than about 256 kB.
   std::uint64_t tile_bytes = 0;
   TileSplit split = TileSplit::Auto;
 };

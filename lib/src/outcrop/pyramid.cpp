@@ -29,6 +29,7 @@ namespace {
 constexpr double unknown_texel_bytes = 0.4;  // of a JPEG photograph
 constexpr std::uint64_t least_tile_bytes = 128'000;
 constexpr std::uint64_t most_tile_bytes = 1'000'000;
+constexpr std::uint64_t most_root_bytes = 256'000;  // all of it is read before anything shows
 constexpr std::uint64_t tiles_aimed_at = 64;
 constexpr std::uint32_t most_levels = 96;
 constexpr std::uint32_t least_triangles = 64;  // of a level: fewer show nothing of a rock and save nothing
@@ -396,7 +397,8 @@ Status OutcropBuilder::climb() {
   tile_of_cell_ = front_->cover();
   double scale = 1.0;
   add_level(scale);
-  while (tile_count() > 1 || (bytes_of_front() > static_cast<double>(out_->tile_bytes_) && !stuck_)) {
+  const auto root_bytes = static_cast<double>(std::min(most_root_bytes, out_->tile_bytes_));
+  while (tile_count() > 1 || (bytes_of_front() > root_bytes && !stuck_)) {
     if (out_->levels_.size() >= most_levels) break;
     if (context_.cancelled()) return cancelled;
     stuck_ = stuck_ || out_->levels_.size() + 2 >= most_levels;

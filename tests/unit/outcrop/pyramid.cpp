@@ -230,6 +230,15 @@ TEST_CASE("Without a ratio rock that is rough beside its texels keeps its triang
   CHECK(second_step(16) == Approx(0.2).margin(0.01));    // of metres
 }
 
+TEST_CASE("However large tiles are, the root is small, since nothing shows before it is read") {
+  const auto cliff = generate_outcrop({.triangles = 30'000, .textures = 1, .texture_size_px = 64});
+  REQUIRE(cliff);
+  const auto pyramid = pyramid_of(*cliff, {.tile_bytes = 8'000'000});
+  CHECK(pyramid->levels().front().tiles == 1);
+  constexpr std::uint32_t bytes_of_a_triangle = 20;  // with its share of vertices
+  CHECK(pyramid->levels().back().triangles < 256'000 / bytes_of_a_triangle);
+}
+
 TEST_CASE("The same pyramid comes out for any number of workers") {
   const auto one = pyramid_of(small_cliff(), small_tiles(), 1);
   for (const unsigned workers : {2U, 8U}) {
