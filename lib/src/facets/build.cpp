@@ -118,7 +118,7 @@ class Builder {
     return !closed_ && block_.exists() &&
            mesh_.live_faces <= last_stretch_share * static_cast<double>(mesh_.faces.size());
   }
-  void collapse_rest();
+  void collapse_rest(double price);
 
   const FacetShiftOptions& options_;
   const Context& context_;
@@ -492,12 +492,12 @@ std::string Builder::why_no_block() const {
   return "too few vertices are left for the corners of the block";
 }
 
-void Builder::collapse_rest() {
+void Builder::collapse_rest(double price) {
   float error_m = 0.0F;
   for (std::uint32_t p = 0; p < mesh_.point_count(); ++p) {
     if (!mesh_.faces_of[p].empty()) error_m = std::max(error_m, mesh_.deviation_m[p]);
   }
-  report_.last_collapses = collapse_the_rest(mesh_, options_, next_block(), error_m, context_, log_);
+  report_.last_collapses = collapse_the_rest(mesh_, options_, next_block(), {error_m, price}, context_, log_);
 }
 
 progressive::EditLog Builder::run(FacetShiftReport& report) {
@@ -517,7 +517,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
   for (const CharacteristicSurface& s : mesh_.surfaces.surfaces) area += s.area_m2;
   const double diagonal = bounds(*mesh_.source).diagonal_m();
   const double last_price = last_share * area * diagonal * diagonal;
-  for (double price = first_price; price <= last_price && !done(); price *= price_step) {
+  double price = first_price;
+  for (; price <= last_price && !done(); price *= price_step) {
     bool any = true;
     pieces_.weigh();
     for (const auto& [point, onto] : refused_) later_.push_back(point);
@@ -537,7 +538,7 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
     context_.report("facet shift",
                     1.0 - static_cast<double>(mesh_.live_faces) / static_cast<double>(mesh_.faces.size()));
   }
-  if (hands_over()) collapse_rest();
+  if (hands_over()) collapse_rest(price / price_step);
   become(stepped_);
   report_.reached_block = become(block_) || is_block(mesh_);
   if (!report_.reached_block) report_.block_sentence = why_no_block();

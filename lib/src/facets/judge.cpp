@@ -212,6 +212,15 @@ bool SlideJudge::goes_the_wrong_way(bool border) const {
   return border ? gain < -1e-6 : rare_gain > 1e-6;
 }
 
+// Whether an outline of a material would come to touch another one across what lies between.
+bool SlideJudge::pinches(std::uint32_t v) const {
+  const auto edge = std::find_if(spokes_.begin(), spokes_.end(), [v](const Spoke& s) { return s.to == v; });
+  if (edge == spokes_.end() || edge->border || edge->mixed) return false;
+  const auto& around = mesh_.faces_of[v];
+  return std::any_of(around.begin(), around.end(),
+                     [&](FaceId f) { return mesh_.source->face_material(f) != edge->material; });
+}
+
 // How far the lines through the point leave their place when it goes to v.
 void SlideJudge::judge_lines(std::uint32_t v, Verdict& verdict) const {
   const glm::dvec3 to = mesh_.at(v);
@@ -223,13 +232,14 @@ void SlideJudge::judge_lines(std::uint32_t v, Verdict& verdict) const {
     v_to_old = std::min(v_to_old, s.to == v ? 0.0 : segment_distance(to, mesh_.at(s.to), from_));
   }
   verdict.error_m = std::max(verdict.error_m, v_to_old);
+  const double pinch_m = pinches(v) ? glm::length(to - from_) : 0.0;
   double swept = 0.0;
   bool ends = true;
   for (const Spoke& s : spokes_) {
     if ((!s.border && !s.mixed) || s.to == v) continue;
     ends = false;
     const glm::dvec3 w = mesh_.at(s.to);
-    const double away = std::max(segment_distance(from_, w, to), v_to_old);
+    const double away = std::max({segment_distance(from_, w, to), v_to_old, pinch_m});
     const double area_m2 = 0.5 * glm::length(glm::cross(w - from_, to - from_));
     swept += area_m2 * away * away / 3.0;
     if (s.mixed) verdict.cost += mesh_.looks.cost(s.material, s.other, area_m2);

@@ -60,6 +60,7 @@ class SlideJudge {
   [[nodiscard]] bool judge_face(SlidingFace& s, const glm::dvec3& to, double deviation_m, Verdict& verdict);
   [[nodiscard]] std::size_t outline_of(const SlidingFace& s);
   void judge_lines(std::uint32_t v, Verdict& verdict) const;
+  [[nodiscard]] bool pinches(std::uint32_t v) const;
   [[nodiscard]] bool goes_the_wrong_way(bool border) const;
   [[nodiscard]] bool link_holds(std::uint32_t v);
 

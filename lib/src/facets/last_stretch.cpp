@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "collapse/engine.h"
+#include "facets/openings.h"
 #include "mesh/weld.h"
 
 namespace lodestone::facets {
@@ -19,15 +21,17 @@ constexpr std::size_t few_faces = 1'000;
 constexpr double error_step = 1.3;      // from one stage to the next; each looks at all edges,
 constexpr double coarse_step = 2.0;     // so where more faces are left there are fewer stages
 constexpr double strict_quota = 0.005;  // of the points in a pass: near to strict order, which few can afford
-constexpr double plane_arm_m = 9.0;     // that of the loop's own slides
-constexpr double claim_factor = 2.0;    // the engine's claims times this, added to what was claimed before
+constexpr double upright_sine = 0.1;
+constexpr std::size_t most_corners = 8;  // of a window that goes whole
+constexpr double plane_arm_m = 9.0;      // that of the loop's own slides
+constexpr double claim_factor = 2.0;     // the engine's claims times this, added to what was claimed before
 constexpr SurfaceTolerance tolerance{.angle_rad = 0.0175, .offset_m = 0.004};
 
 // What is left of the building as a mesh of its own, which follows the engine's records.
 class Rest final : public collapse::Sink {
  public:
-  Rest(FacetMesh& mesh, const Block& block, double error_m, progressive::EditLog& log)
-      : mesh_(mesh), block_(block), error_m_(error_m), log_(log) {
+  Rest(FacetMesh& mesh, const Block& block, Reached reached, progressive::EditLog& log)
+      : mesh_(mesh), block_(block), error_m_(reached.error_m), price_(reached.price), log_(log) {
     gather();
     CharacteristicSurfaces found = characteristic_surfaces(rest_, tolerance);
     for (const CharacteristicSurface& s : found.surfaces) planes_.push_back({s.normal, s.offset_m});
@@ -63,8 +67,10 @@ class Rest final : public collapse::Sink {
     double limit_m = first_error_m;
     while (limit_m < last_m && !context.cancelled()) {
       if (stopped_ || mesh_.live_faces <= target) break;
+      const std::vector<std::uint8_t> frozen = close_windows(options, price_ * limit_m / first_error_m);
       drop_dead_faces();
       EdgeCollapseOptions stage = hold_planes(limit_m * limit_m);
+      stage.frozen = frozen;
       stage.max_error_m = limit_m;
       stage.target_triangles = target;
       collapse::run(rest_, stage, context, *this,
@@ -79,7 +85,7 @@ class Rest final : public collapse::Sink {
 
  private:
   void gather() {
-    std::vector<VertexId> id(mesh_.source->vertex_count(), none);
+    id_.assign(mesh_.source->vertex_count(), none);
     rest_.materials = mesh_.source->materials;
     rest_.textures = mesh_.source->textures;
     for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
@@ -87,14 +93,21 @@ class Rest final : public collapse::Sink {
       face_.push_back(f);
       rest_.face_materials.push_back(mesh_.source->face_material(f));
       for (const VertexId v : mesh_.faces[f].vertex) {
-        if (id[v] == none) {
-          id[v] = static_cast<VertexId>(vertex_.size());
+        if (id_[v] == none) {
+          id_[v] = static_cast<VertexId>(vertex_.size());
           vertex_.push_back(v);
         }
-        rest_.indices.push_back(id[v]);
+        rest_.indices.push_back(id_[v]);
       }
     }
+    take_values();
+    strayed_m_.assign(vertex_.size(), 0.0F);
+    dead_.assign(face_.size(), 0);
+  }
+
+  void take_values() {
     const auto take = [&](auto& to, const auto& from) {
+      to.clear();
       if (from.empty()) return;
       for (const VertexId v : vertex_) to.push_back(from[v]);
     };
@@ -102,8 +115,6 @@ class Rest final : public collapse::Sink {
     take(rest_.vertices.normals, mesh_.values.normals);
     take(rest_.vertices.uvs, mesh_.values.uvs);
     take(rest_.vertices.colors, mesh_.values.colors);
-    strayed_m_.assign(vertex_.size(), 0.0F);
-    dead_.assign(face_.size(), 0);
   }
 
   void remove_face(FaceId f) {
@@ -165,6 +176,71 @@ class Rest final : public collapse::Sink {
     return options;
   }
 
+  // Windows and doors go whole: those worth the price close, the outlines of the dearer ones stay where they are.
+  // Returns for each vertex whether it is on such an outline.
+  [[nodiscard]] std::vector<std::uint8_t> close_windows(const FacetShiftOptions& options, double price) {
+    hand_back();
+    Openings openings{mesh_, false};
+    const auto job_of = [&](const Opening& opening, double most) -> std::optional<OpeningJob> {
+      if (!is_window(opening)) return std::nullopt;
+      auto job = openings.job(opening, most, options.max_error_m);
+      if (job && job->patch.gone.empty()) return std::nullopt;
+      return job;
+    };
+    for (bool any = true; any;) {
+      any = false;
+      openings.update();
+      for (const Opening& opening : openings.all()) {
+        const auto job = job_of(opening, price);
+        if (!job || leaves_too_few(job->patch.gone, options)) continue;
+        apply(mesh_, job->patch, job->error_m, log_);
+        take_back(*job, opening.wall);
+        ++record_count_;
+        any = true;
+      }
+    }
+    take_values();
+    std::vector<std::uint8_t> held(mesh_.point_count(), 0);
+    for (const Opening& opening : openings.all()) {
+      if (!job_of(opening, std::numeric_limits<double>::infinity())) continue;
+      for (const std::uint32_t p : opening.loop) held[p] = 1;
+    }
+    std::vector<std::uint8_t> frozen(vertex_.size(), 0);
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      if (!mesh_.faces[face_[i]].live) continue;
+      for (std::size_t k = 0; k < 3; ++k) frozen[rest_.indices[3 * i + k]] = held[mesh_.faces[face_[i]].point[k]];
+    }
+    return frozen;
+  }
+
+  // What has more corners frays, or nothing would be left to go.
+  [[nodiscard]] bool is_window(const Opening& opening) const {
+    return opening.loop.size() <= most_corners && mesh_.faces[opening.wall].live &&
+           std::abs(mesh_.faces[opening.wall].normal.z) < upright_sine;
+  }
+
+  [[nodiscard]] bool leaves_too_few(const std::vector<FaceId>& gone, const FacetShiftOptions& options) const {
+    return mesh_.live_faces < std::max(options.target_triangles, block_.face_count()) + gone.size() ||
+           block_.needs(mesh_, gone);
+  }
+
+  void take_back(const OpeningJob& job, FaceId wall) {
+    const auto index_of = [&](FaceId f) {
+      return static_cast<std::size_t>(std::lower_bound(face_.begin(), face_.end(), f) - face_.begin());
+    };
+    const std::uint32_t plane = job.kind == OpeningJob::Kind::Recess ? none : plane_of_face_[index_of(wall)];
+    const auto strayed_m = static_cast<float>((job.error_m - error_m_) / claim_factor);
+    for (const FaceId f : job.patch.gone) dead_[index_of(f)] = 1;
+    for (const Redrawn& r : job.patch.redrawn) {
+      const std::size_t i = index_of(r.face);
+      plane_of_face_[i] = plane;
+      for (std::size_t k = 0; k < 3; ++k) {
+        rest_.indices[3 * i + k] = id_[r.vertex[k]];
+        stray(id_[r.vertex[k]], strayed_m);
+      }
+    }
+  }
+
   // Gives the values back, and new points where they now lie.
   void hand_back() {
     const auto give = [&](auto& to, const auto& from) {
@@ -178,13 +254,16 @@ class Rest final : public collapse::Sink {
     const std::size_t points = std::max<std::size_t>(weld.point_count(), mesh_.place.size());
     mesh_.place.resize(points, glm::vec3{0.0F});
     mesh_.version.resize(points, 0);
-    mesh_.deviation_m.resize(points, 0.0F);
+    mesh_.deviation_m.assign(points, static_cast<float>(error_m_));
     mesh_.faces_of.assign(points, {});
     for (FaceId f = 0; f < dead_.size(); ++f) {
       if (dead_[f] != 0) continue;
       Face& face = mesh_.faces[face_[f]];
       for (std::size_t k = 0; k < 3; ++k) {
         face.point[k] = weld.point_of[rest_.indices[3 * std::size_t{f} + k]];
+        const double strayed_m = strayed_m_[rest_.indices[3 * std::size_t{f} + k]];
+        float& deviation_m = mesh_.deviation_m[face.point[k]];
+        deviation_m = std::max(deviation_m, static_cast<float>(error_m_ + claim_factor * strayed_m));
         mesh_.place[face.point[k]] = mesh_.values.positions[face.vertex[k]];
         auto& around = mesh_.faces_of[face.point[k]];
         if (around.empty() || around.back() != face_[f]) around.push_back(face_[f]);
@@ -197,10 +276,12 @@ class Rest final : public collapse::Sink {
   FacetMesh& mesh_;
   const Block& block_;
   double error_m_;
+  double price_;
   progressive::EditLog& log_;
   Mesh rest_;
   std::vector<FaceId> face_;      // of rest_: in the source
   std::vector<VertexId> vertex_;  // the same
+  std::vector<VertexId> id_;      // of the source: in rest_
   std::vector<float> strayed_m_;  // per vertex: since the engine took over, by its claims
   std::vector<std::uint8_t> dead_;
   std::vector<HeldPlane> planes_;
@@ -211,9 +292,9 @@ class Rest final : public collapse::Sink {
 
 }  // namespace
 
-std::uint32_t collapse_the_rest(FacetMesh& mesh, const FacetShiftOptions& options, const Block& block, double error_m,
+std::uint32_t collapse_the_rest(FacetMesh& mesh, const FacetShiftOptions& options, const Block& block, Reached reached,
                                 const Context& context, progressive::EditLog& log) {
-  return Rest{mesh, block, error_m, log}.run(options, context);
+  return Rest{mesh, block, reached, log}.run(options, context);
 }
 
 }  // namespace lodestone::facets

@@ -95,9 +95,6 @@ double most_deviation(const FacetMesh& mesh, const std::vector<FaceId>& faces) {
   return most;
 }
 
-// As wide as a square of its area and outline.
-double size_of(const Opening& opening) { return 2.0 * opening.area_m2 / opening.perimeter_m; }
-
 bool contains(const std::vector<FaceId>& sorted, FaceId f) {
   return std::binary_search(sorted.begin(), sorted.end(), f);
 }
@@ -336,7 +333,7 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
   const double open_m2 = opening.area_m2 - std::max(front, back);
   if (pane && open_m2 > (1.0 - covered) * opening.area_m2) {
     if (pane->patch.gone.empty()) return std::nullopt;
-    const double size_m = size_of(opening);
+    const double size_m = opening.size_m();
     pane->cost += open_m2 * size_m * size_m / 3.0 + mesh_.looks.cost_of_hole(open_m2);
     pane->error_m = std::max(pane->error_m, size_m);
   }
@@ -457,7 +454,7 @@ std::optional<OpeningJob> fill(const FacetMesh& mesh, const Opening& opening) {
   OpeningJob job;
   if (!WallMaker{mesh, opening, around}.run(job.patch)) return std::nullopt;
   job.patch.gone.insert(job.patch.gone.end(), filling.begin(), filling.end());
-  const double size = size_of(opening);
+  const double size = opening.size_m();
   job.cost = (filling.empty() ? 1.0 : look_weight) * opening.area_m2 * size * size / 3.0;
   if (filling.empty()) job.cost += mesh.looks.cost_of_hole(opening.area_m2);
   for (const FaceId f : filling) job.cost += mesh.looks.cost(mesh.source->face_material(f), material, area(mesh, f));

@@ -18,6 +18,9 @@ struct Opening {
   FaceId wall = none;  // one of the faces around
   double area_m2 = 0.0;
   double perimeter_m = 0.0;
+
+  // As wide as a square of its area and outline.
+  [[nodiscard]] double size_m() const noexcept { return 2.0 * area_m2 / perimeter_m; }
 };
 
 class Walls {
