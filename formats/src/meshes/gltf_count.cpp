@@ -63,10 +63,10 @@ struct Buffer {
   bool in_text = false;
 };
 
-constexpr std::uint64_t most_count = ReadOptions{}.max_triangles;  // and vertices
-constexpr std::uint64_t most_packing = 1024;                       // elements of a byte that any codec unpacks
+constexpr std::uint64_t most_packing = 1024;  // elements of a byte that any codec unpacks
 
 std::uint64_t capped_sum(std::uint64_t sum, std::uint64_t times, std::uint64_t count) {
+  const std::uint64_t most_count = ReadOptions{}.max_triangles;  // and vertices
   if (count > 0 && times > (most_count - sum) / count) return most_count;
   return sum + times * count;
 }

@@ -70,7 +70,7 @@ struct OutcropSize {
   std::uint32_t vertex_bytes = 0;  ///< of a vertex with its attributes
 };
 [[nodiscard]] OutcropSize outcrop_size(const Mesh& mesh) noexcept;
-/// Triangles without area. They are in the finest level, and do not count for errors.
+/// Triangles without area. They are in the finest level, and do not count for errors; boxes contain them.
 [[nodiscard]] std::uint32_t degenerate_triangle_count(const Mesh& mesh) noexcept;
 /// The most that OutcropPyramid::build() holds, the mesh handed over included: on one worker, which measures and
 /// simplifies by turns, about 215 bytes a triangle of a welded mesh (300 at a ratio of 0.8), on several 320 (340),
@@ -98,7 +98,9 @@ struct OutcropTile {
   std::vector<std::uint32_t> children;  ///< of level - 1: one (only simplified), or up to four (merged)
   std::vector<std::uint32_t> segments;  ///< whose faces it holds, ascending
   std::uint32_t triangles = 0;
-  Box bounds;            ///< of its own triangles and of all below, relative to the origin
+  /// Of its own triangles, those without area too, and of all below, relative to the origin. Clients need boxes that
+  /// contain what is in the files: a thin triangle without area that reaches far makes its finest tile's box reach far.
+  Box bounds;
   double error_m = 0.0;  ///< the larger of measured deviation and texel size; 0 at level 0; parents have more
   double texel_m = 0.0;  ///< mean size of its texels on the rock; 0 if untextured
   double gap_m = 0.0;    ///< its border lies no farther than this from that of a finer neighbour; 0 at level 0
