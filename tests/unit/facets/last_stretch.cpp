@@ -75,8 +75,8 @@ TEST_CASE("the walls of the IFC house close and stay closed, and its site stays 
     const Mesh shown = built->model->extract(built->model->level_of_triangles(triangles));
     CHECK(share_stopped(shown) >= closed);
     const test::Leaning found = test::leaning(directions, shown);
-    CHECK(found.walls_m2 < 1e-2 * found.area_m2);
-    CHECK(found.others_m2 < 1e-2 * found.area_m2);
+    CHECK(found.walls_m2 < 2e-2 * found.area_m2);
+    CHECK(found.others_m2 < 2e-2 * found.area_m2);
   }
 }
 
