@@ -91,7 +91,7 @@ Footprint footprint_of(const FacetMesh& mesh, const Houses& houses, std::uint32_
       found.surfaces.back().face_count = 0;
     }
     found.surface_of_face.push_back(surface);
-    found.surfaces[surface].area_m2 += 0.5 * glm::length(mesh.area_vector(mesh.faces[f]));
+    found.surfaces[surface].area_m2 += mesh.area_m2(mesh.faces[f]);
     ++found.surfaces[surface].face_count;
   }
   if (part.indices.empty()) return {.sentence = "there is nothing of it"};

@@ -319,7 +319,7 @@ FacetMesh make_facet_mesh(const Mesh& source, const FacetShiftOptions& options, 
       continue;
     }
     face.live = true;
-    mesh.material_area_m2[source.face_material(f)] += 0.5 * glm::length(mesh.area_vector(face));
+    mesh.material_area_m2[source.face_material(f)] += mesh.area_m2(face);
     ++mesh.live_faces;
     ++mesh.live_of_material[source.face_material(f)];
     face.normal = glm::normalize(mesh.area_vector(face));

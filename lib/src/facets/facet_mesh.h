@@ -56,6 +56,7 @@ struct FacetMesh {
   [[nodiscard]] glm::dvec3 area_vector(const Face& f) const noexcept {
     return glm::cross(at(f.point[1]) - at(f.point[0]), at(f.point[2]) - at(f.point[0]));
   }
+  [[nodiscard]] double area_m2(const Face& f) const noexcept { return 0.5 * glm::length(area_vector(f)); }
   // Changes when the face, its corners or its neighbours do; never 0.
   [[nodiscard]] std::uint64_t state_of(FaceId f) const noexcept {
     std::uint64_t sum = 1;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 #include <optional>
 #include <utility>
 
@@ -85,29 +86,17 @@ bool covered(const std::vector<glm::dvec2>& points, const std::vector<std::uint3
   return raster.count_in(polygon) * raster.cell_area_m2() > 0.25 * twice_area_m2;
 }
 
-// The outlines of all cells that are covered, simple loops, the covered side to the left. Empty if two touch in a
-// point.
+// Empty if two of them touch in a point.
 std::vector<std::vector<glm::dvec2>> covered_loops(const GroundCells& cells, const HeightRaster& raster) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> edges;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& cell : cells.cells()) {
     if (!covered(cells.points(), cell, raster)) continue;
-    for (std::size_t i = 0; i < cell.size(); ++i) edges[{cell[i], cell[(i + 1) % cell.size()]}] = true;
-  }
-  std::map<std::uint32_t, std::uint32_t> next;
-  for (const auto& [edge, used] : edges) {
-    if (edges.contains({edge.second, edge.first})) continue;
-    if (!next.emplace(edge.first, edge.second).second) return {};
+    for (std::size_t i = 0; i < cell.size(); ++i) edges.emplace(cell[i], cell[(i + 1) % cell.size()]);
   }
   std::vector<std::vector<glm::dvec2>> loops;
-  while (!next.empty()) {
-    std::vector<glm::dvec2> loop;
-    for (auto at = next.begin(); at != next.end();) {
-      loop.push_back(cells.points()[at->first]);
-      const std::uint32_t to = at->second;
-      next.erase(at);
-      at = next.find(to);
-    }
-    loops.push_back(std::move(loop));
+  for (const auto& outline : outlines_of(edges)) {
+    loops.emplace_back();
+    for (const std::uint32_t p : outline) loops.back().push_back(cells.points()[p]);
   }
   return loops;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -71,5 +72,27 @@ class GroundCells {
   std::vector<glm::dvec2> points_;
   std::vector<std::vector<std::uint32_t>> cells_;
 };
+
+// The outlines of some cells, given by all edges of these, each with its cell to the left: simple loops of points, the
+// cells to the left. Empty if two of them touch in a point.
+[[nodiscard]] inline std::vector<std::vector<std::uint32_t>> outlines_of(
+    const std::set<std::pair<std::uint32_t, std::uint32_t>>& edges) {
+  std::map<std::uint32_t, std::uint32_t> next;
+  for (const auto& [from, to] : edges) {
+    if (!edges.contains({to, from}) && !next.emplace(from, to).second) return {};
+  }
+  std::vector<std::vector<std::uint32_t>> loops;
+  while (!next.empty()) {
+    std::vector<std::uint32_t> loop;
+    for (auto at = next.begin(); at != next.end();) {
+      loop.push_back(at->first);
+      const std::uint32_t to = at->second;
+      next.erase(at);
+      at = next.find(to);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
 
 }  // namespace lodestone::facets

@@ -94,7 +94,7 @@ void judge_loss(const FacetMesh& mesh, const Face& face, std::uint32_t u, std::u
     rests = rests || !at_u;
   }
   const double away = glm::length(mesh.at(w) - mesh.at(v)) * (rests ? 0.5 : 1.0);
-  verdict.cost += 0.5 * glm::length(mesh.area_vector(face)) * away * away / 3.0;
+  verdict.cost += mesh.area_m2(face) * away * away / 3.0;
   verdict.error_m = std::max(verdict.error_m, away);
 }
 
@@ -322,7 +322,7 @@ Verdict judge_shift(const FacetMesh& mesh, Moved& moved, std::span<const Move> m
     ++verdict.faces_gone;
     double way = 0.0;
     for (const std::uint32_t q : p) way = std::max(way, glm::length(moved.at(q) - mesh.at(q)));
-    verdict.cost += 0.5 * glm::length(mesh.area_vector(face)) * way * way * side_weight;
+    verdict.cost += mesh.area_m2(face) * way * way * side_weight;
     verdict.error_m = std::max(verdict.error_m, way);
   }
   add_deviation(mesh, moves, verdict);

@@ -85,7 +85,7 @@ class Shape {
   glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
 };
 
-double area(const FacetMesh& mesh, FaceId f) { return 0.5 * glm::length(mesh.area_vector(mesh.faces[f])); }
+double area(const FacetMesh& mesh, FaceId f) { return mesh.area_m2(mesh.faces[f]); }
 
 double most_deviation(const FacetMesh& mesh, const std::vector<FaceId>& faces) {
   double most = 0.0;

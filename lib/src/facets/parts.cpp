@@ -177,7 +177,7 @@ double PartFinder::at_middle(std::uint32_t p, std::uint32_t q, double limit_m) {
 // What the face costs, infinite if that is more than `most`; from its corners alone it is what it costs at least. Looks
 // from the middles of its edges too where one of them is long.
 double PartFinder::cost_of(const Face& face, Look look, double limit_m, double most) {
-  const double area_m2 = 0.5 * glm::length(mesh_.area_vector(face));
+  const double area_m2 = mesh_.area_m2(face);
   limit_m = std::min(limit_m, std::sqrt(6.0 * most / area_m2));
   const auto& p = face.point;
   std::array<double, 3> d{};
@@ -201,7 +201,7 @@ double PartFinder::eroded() const {
   double whole_m2 = 0.0;
   double left_m2 = 0.0;
   for (const FaceId f : part_.faces) {
-    const double area_m2 = 0.5 * glm::length(mesh_.area_vector(mesh_.faces[f]));
+    const double area_m2 = mesh_.area_m2(mesh_.faces[f]);
     left_m2 += area_m2;
     whole_m2 += area_m2 * pieces_.ratio(f);
   }
@@ -210,7 +210,7 @@ double PartFinder::eroded() const {
 
 // Its broad side shows what it lies upon instead.
 double PartFinder::look_lost() const {
-  const auto area = [&](FaceId f) { return 0.5 * glm::length(mesh_.area_vector(mesh_.faces[f])); };
+  const auto area = [&](FaceId f) { return mesh_.area_m2(mesh_.faces[f]); };
   const FaceId largest =
       *std::max_element(part_.faces.begin(), part_.faces.end(), [&](FaceId a, FaceId b) { return area(a) < area(b); });
   const glm::dvec3 across = mesh_.faces[largest].normal;

@@ -4,11 +4,6 @@
 #include "facets/parts.h"
 
 namespace lodestone::facets {
-namespace {
-
-double area_m2(const FacetMesh& mesh, FaceId f) { return 0.5 * glm::length(mesh.area_vector(mesh.faces[f])); }
-
-}  // namespace
 
 Pieces::Pieces(const FacetMesh& mesh) : mesh_(mesh) {
   left_m2_.resize(split_by_points(mesh, piece_of_));
@@ -19,7 +14,7 @@ Pieces::Pieces(const FacetMesh& mesh) : mesh_(mesh) {
 void Pieces::weigh() {
   std::fill(left_m2_.begin(), left_m2_.end(), 0.0);
   for (FaceId f = 0; f < piece_of_.size(); ++f) {
-    if (mesh_.faces[f].live) left_m2_[piece_of_[f]] += area_m2(mesh_, f);
+    if (mesh_.faces[f].live) left_m2_[piece_of_[f]] += mesh_.area_m2(mesh_.faces[f]);
   }
 }
 
@@ -28,7 +23,7 @@ void Pieces::hand_on(std::span<const FaceId> faces, std::span<const std::uint32_
   for (const FaceId f : faces) {
     const std::uint32_t piece = piece_of_[f];
     if (left_m2_[piece] <= 0.0) continue;
-    const double own_m2 = std::min(area_m2(mesh_, f), left_m2_[piece]);
+    const double own_m2 = std::min(mesh_.area_m2(mesh_.faces[f]), left_m2_[piece]);
     const double share_m2 = whole_m2_[piece] * own_m2 / left_m2_[piece];
     gone_m2 += share_m2;
     whole_m2_[piece] -= share_m2;

@@ -41,7 +41,7 @@ void Planner::add_face(FaceId f) {
   face_stamp_[f] = now_;
   faces_.push_back(f);
   const Face& face = mesh_.faces[f];
-  area_m2_ += 0.5 * glm::length(mesh_.area_vector(face));
+  area_m2_ += mesh_.area_m2(face);
   for (const std::uint32_t p : face.point) {
     if (point_stamp_[p] == now_) continue;
     point_stamp_[p] = now_;

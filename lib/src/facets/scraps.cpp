@@ -131,7 +131,7 @@ double ScrapFinder::cost_of(FaceId f, std::uint32_t id, double limit_m, Scrap& s
     if (q.face == none) return infinity;
     add(q.squared_m, q.face);
   }
-  const double area_m2 = 0.5 * glm::length(mesh_.area_vector(face));
+  const double area_m2 = mesh_.area_m2(face);
   const MaterialId material = mesh_.source->face_material(f);
   const double look = queries[3].squared_m > behind_m * behind_m
                           ? mesh_.looks.cost_of_hole(area_m2)
@@ -153,7 +153,7 @@ std::optional<Scrap> ScrapFinder::measure(std::uint32_t id, double price, Known&
   const auto count = static_cast<double>(groups_[id].size());
   const double most = look_ahead * price * count;
   const auto limit_of = [&](FaceId f) {
-    const double area_m2 = 0.5 * glm::length(mesh_.area_vector(mesh_.faces[f]));
+    const double area_m2 = mesh_.area_m2(mesh_.faces[f]);
     return std::min(std::sqrt(7.0 * most / std::max(area_m2, 1e-9)), most_m);
   };
   if (known.dearest != none) {

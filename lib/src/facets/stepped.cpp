@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "facets/ground_cells.h"
@@ -203,24 +204,12 @@ class Builder {
   // The loops around the cells of these heights, each a facet of its own with the holes in it.
   template <class Wanted>
   void add_level(SteppedFacet::Kind kind, double z, Wanted wanted) {
-    std::map<std::uint32_t, std::uint32_t> next;
+    std::set<Edge> edges;
     for (const auto& [edge, height_m] : height_) {
-      if (!wanted(height_m)) continue;
-      const auto across = height_.find({edge.second, edge.first});
-      if (across != height_.end() && wanted(across->second)) continue;
-      torn_ = torn_ || !next.emplace(edge.first, edge.second).second;
+      if (wanted(height_m)) edges.insert(edge);
     }
     std::vector<std::vector<std::uint32_t>> loops;
-    while (!next.empty()) {
-      std::vector<std::uint32_t> loop;
-      for (auto here = next.begin(); here != next.end();) {
-        loop.push_back(here->first);
-        const std::uint32_t to = here->second;
-        next.erase(here);
-        here = next.find(to);
-      }
-      loops.push_back(straightened(loop));
-    }
+    for (const auto& loop : outlines_of(edges)) loops.push_back(straightened(loop));
     add_facets(kind, z, loops);
   }
 
