@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace lodestone::facets {
@@ -131,7 +132,7 @@ bool CrossingFinder::makes_crossing(const Moved& moved) const {
     const FloatBox around{glm::vec3{all.low}, glm::vec3{all.high}};
     const auto is_near = [&](FaceId g) { return boxes_[g].touches(around); };
     bool found = false;
-    const std::vector<FaceId>& part = parts_.part_of(first);
+    const std::span<const FaceId> part = parts_.part_of(first);
     // What is large itself would look into more cells than there are faces.
     if (part.size() <= small_part || cell_work * index_.work(all.low, all.high) > static_cast<double>(part.size())) {
       found = std::any_of(part.begin(), part.end(), [&](FaceId g) { return is_near(g) && meets(g); });

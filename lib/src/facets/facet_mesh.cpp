@@ -204,7 +204,7 @@ class Editor {
     mesh_.touched.insert(mesh_.touched.end(), alive_.begin(), alive_.end());
     for (const FaceId f : dead_) {
       for (const std::uint32_t p : mesh_.faces[f].point) {
-        std::erase(mesh_.faces_of[p], f);
+        mesh_.faces_of[p].erase(f);
         ++mesh_.version[p];
       }
     }
@@ -362,7 +362,7 @@ std::vector<VertexId> take_away(FacetMesh& mesh, std::span<const FaceId> faces, 
     --mesh.live_of_material[mesh.source->face_material(f)];
     log.remove_face(f);
     for (std::size_t k = 0; k < 3; ++k) {
-      std::erase(mesh.faces_of[face.point[k]], f);
+      mesh.faces_of[face.point[k]].erase(f);
       ++mesh.version[face.point[k]];
       if (--mesh.uses[face.vertex[k]] == 0) vertices.push_back(face.vertex[k]);
     }

@@ -11,6 +11,7 @@
 
 #include <lodestone/facet_shift.h>
 
+#include "facets/face_list.h"
 #include "facets/looks.h"
 #include "progressive/recorder.h"
 
@@ -34,11 +35,11 @@ struct Move {
 
 struct FacetMesh {
   const Mesh* source = nullptr;
-  std::vector<Face> faces;                    // by source face
-  std::vector<glm::vec3> place;               // per point
-  std::vector<std::vector<FaceId>> faces_of;  // per point, live faces, each once
-  std::vector<float> deviation_m;             // per point: of the surface around it from the source
-  std::vector<std::uint32_t> version;         // per point: changes when its faces do
+  std::vector<Face> faces;             // by source face
+  std::vector<glm::vec3> place;        // per point
+  std::vector<FaceList> faces_of;      // per point, live faces, each once
+  std::vector<float> deviation_m;      // per point: of the surface around it from the source
+  std::vector<std::uint32_t> version;  // per point: changes when its faces do
   CharacteristicSurfaces surfaces;
   std::vector<std::vector<FaceId>> surface_faces;  // may hold dead ones
   VertexArrays values;                             // current

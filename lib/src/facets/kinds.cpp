@@ -29,7 +29,7 @@ Kinds::Kinds(const FacetMesh& mesh)
       order_(mesh.point_count(), 0) {}
 
 // The first face that is large: its first edge and its normal.
-void Kinds::find_frame(const std::vector<FaceId>& faces) {
+void Kinds::find_frame(std::span<const FaceId> faces) {
   double largest = 0.0;
   for (const FaceId f : faces) largest = std::max(largest, glm::length(mesh_.area_vector(mesh_.faces[f])));
   for (const FaceId f : faces) {
@@ -44,7 +44,7 @@ void Kinds::find_frame(const std::vector<FaceId>& faces) {
 }
 
 // False if it is too large, has no area, or some of it is gone.
-bool Kinds::describe(const std::vector<FaceId>& faces) {
+bool Kinds::describe(std::span<const FaceId> faces) {
   if (faces.size() > most_faces) return false;
   ++look_;
   shape_.points.clear();
@@ -124,14 +124,14 @@ std::uint32_t Kinds::find_kind(double& apart) const {
   return none;
 }
 
-void Kinds::update(const std::vector<std::vector<FaceId>>& parts) {
+void Kinds::update(const FaceGroups& parts) {
   std::fill(follows_.begin(), follows_.end(), 0);
   std::fill(kind_.begin(), kind_.end(), none);
   kinds_.clear();
   points_.clear();
   by_hash_.clear();
-  for (const std::vector<FaceId>& faces : parts) {
-    if (!describe(faces)) continue;
+  for (std::uint32_t id = 0; id < parts.size(); ++id) {
+    if (!describe(parts[id])) continue;
     Member member{static_cast<std::uint32_t>(points_.size()), shape_.turn, 0.0};
     points_.insert(points_.end(), shape_.points.begin(), shape_.points.end());
     const std::uint32_t kind = find_kind(member.apart_m);

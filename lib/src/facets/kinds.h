@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "facets/face_groups.h"
 #include "facets/facet_mesh.h"
 
 namespace lodestone::facets {
@@ -19,8 +20,8 @@ class Kinds {
  public:
   explicit Kinds(const FacetMesh& mesh);
 
-  // Sorts the parts, each given by its faces, ascending. Without call there are no kinds.
-  void update(const std::vector<std::vector<FaceId>>& parts);
+  // Sorts the parts. Without call there are no kinds.
+  void update(const FaceGroups& parts);
 
   [[nodiscard]] bool follows(std::uint32_t point) const noexcept { return follows_[point] != 0; }
   [[nodiscard]] bool follows(const Face& face) const noexcept { return follows(face.point[0]); }
@@ -63,8 +64,8 @@ class Kinds {
     Shape shape;  // of the leader
     std::vector<Member> members;
   };
-  [[nodiscard]] bool describe(const std::vector<FaceId>& faces);
-  void find_frame(const std::vector<FaceId>& faces);
+  [[nodiscard]] bool describe(std::span<const FaceId> faces);
+  void find_frame(std::span<const FaceId> faces);
   [[nodiscard]] double apart_m(const Shape& a) const;
   [[nodiscard]] std::uint32_t find_kind(double& apart_m) const;
 

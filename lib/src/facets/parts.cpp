@@ -22,7 +22,11 @@ constexpr double look_ahead = 4096.0;  // times the price: so far costs are foun
 }  // namespace
 
 PartFinder::PartFinder(const FacetMesh& mesh, const Pieces& pieces, Surroundings& around)
-    : mesh_(mesh), pieces_(pieces), around_(around), part_of_(mesh.faces.size(), none), known_(mesh.faces.size()) {
+    : mesh_(mesh),
+      pieces_(pieces),
+      around_(around),
+      part_of_(mesh.faces.size(), none),
+      known_of_(mesh.faces.size(), none) {
   corners_.resize(mesh.point_count());
   middles_.resize(std::bit_ceil(mesh.point_count() / 2 + 1));
   measured_.resize(mesh.point_count(), 0);
@@ -52,14 +56,11 @@ std::uint32_t split_by_points(const FacetMesh& mesh, std::vector<std::uint32_t>&
 void PartFinder::split() {
   if (edits_ == mesh_.edits) return;
   edits_ = mesh_.edits;
-  parts_.clear();
-  parts_.resize(split_by_points(mesh_, part_of_));
-  for (FaceId f = 0; f < part_of_.size(); ++f) {
-    if (part_of_[f] != none) parts_[part_of_[f]].push_back(f);
-  }
+  const std::uint32_t count = split_by_points(mesh_, part_of_);
+  parts_.sort(part_of_, count);
 }
 
-std::uint64_t PartFinder::state_of(const std::vector<FaceId>& faces) const {
+std::uint64_t PartFinder::state_of(std::span<const FaceId> faces) const {
   std::uint64_t sum = 0;
   for (const FaceId f : faces) sum += mesh_.state_of(f);
   return sum;
@@ -105,11 +106,14 @@ bool PartFinder::holds(const Sample& known, const glm::vec3& at, double limit_m)
 }
 
 // How far the place is from the rest, infinite if there is nothing within the limit.
-double PartFinder::sample(const glm::vec3& at, double limit_m, Sample& known) {
+double PartFinder::sample(const glm::vec3& at, double limit_m, std::span<const FaceId> hints, Sample& known) {
   if (!holds(known, at, limit_m)) {
-    const Surroundings::Nearest found = around_.nearest(glm::dvec3{at}, id_, limit_m, last_nearest_);
-    known = {at, found.face, found.face == none ? 0 : mesh_.shape_of(found.face),
-             found.face == none ? limit_m : found.distance_m};
+    Surroundings::Query query{at, limit_m * limit_m};
+    for (const FaceId hint : hints) {
+      if (hint != none) around_.hint(query, hint);
+    }
+    around_.nearest({&query, 1}, id_);
+    known = {at, query.face, query.face == none ? 0 : mesh_.shape_of(query.face), std::sqrt(query.squared_m)};
   }
   if (known.face == none) return infinity;
   last_nearest_ = known.face;
@@ -121,8 +125,8 @@ double PartFinder::sample(const glm::vec3& at, double limit_m, Sample& known) {
   return known.distance_m;
 }
 
-// Of all corners of the part, in few walks through what is around.
-void PartFinder::sample_corners(double limit_m) {
+// Of all corners of faces of the part, in few walks through what is around.
+void PartFinder::sample_corners(std::span<const FaceId> faces, double limit_m) {
   const auto ask = [&] {
     around_.nearest(queries_, id_);
     for (std::size_t i = 0; i < queries_.size(); ++i) {
@@ -132,14 +136,14 @@ void PartFinder::sample_corners(double limit_m) {
     queries_.clear();
     query_points_.clear();
   };
-  for (const FaceId f : part_.faces) {
+  for (const FaceId f : faces) {
     for (const std::uint32_t p : mesh_.faces[f].point) {
       if (asked_[p] == measurement_) continue;
       asked_[p] = measurement_;
       const glm::vec3& at = mesh_.place[p];
       if (holds(corners_[p], at, limit_m)) continue;
       queries_.push_back({at, limit_m * limit_m});
-      around_.hint(queries_.back(), last_nearest_);
+      if (last_nearest_ != none) around_.hint(queries_.back(), last_nearest_);
       query_points_.push_back(p);
       if (queries_.size() == most_queries) ask();
     }
@@ -149,7 +153,7 @@ void PartFinder::sample_corners(double limit_m) {
 
 double PartFinder::at_corner(std::uint32_t p, double limit_m) {
   if (measured_[p] != measurement_) {
-    const double d = sample(mesh_.place[p], limit_m, corners_[p]);
+    const double d = sample(mesh_.place[p], limit_m, {&last_nearest_, 1}, corners_[p]);
     if (std::isinf(d)) return d;
     measured_[p] = measurement_;
   }
@@ -167,7 +171,8 @@ double PartFinder::at_middle(std::uint32_t p, std::uint32_t q, double limit_m) {
   Middle& known = middles_[(p * 0x9E3779B1U ^ q * 0x85EBCA6BU) & (middles_.size() - 1)];
   if (known.low != p || known.high != q) known = {.low = p, .high = q};
   if (known.measurement != measurement_) {
-    const double d = sample(glm::vec3{0.5 * (mesh_.at(p) + mesh_.at(q))}, limit_m, known.sample);
+    const std::array<FaceId, 2> hints{corners_[p].face, corners_[q].face};
+    const double d = sample(glm::vec3{0.5 * (mesh_.at(p) + mesh_.at(q))}, limit_m, hints, known.sample);
     if (std::isinf(d)) return d;
     known.measurement = measurement_;
   }
@@ -241,11 +246,12 @@ bool PartFinder::measure(double limit_m, double price, Known& known) {
   // It is not looked at again before the price is what the dearest face alone costs.
   const double ahead = look_ahead * price * count;
   const double ahead_m = std::sqrt(look_ahead) * limit_m;
+  sample_corners({&known.dearest, 1}, ahead_m);
   const double dearest = cost_of(mesh_.faces[known.dearest], Look::Everywhere, ahead_m, ahead);
   known.key = std::min(dearest, ahead) / count;
   if (known.key > price) return false;
   known.key = std::nextafter(price, 2.0 * price);
-  sample_corners(ahead_m);
+  sample_corners(part_.faces, ahead_m);
   double most = -1.0;
   for (const Look look : {Look::FromCorners, Look::Everywhere}) {
     part_.cost = 0.0;
@@ -306,9 +312,14 @@ std::vector<Part> PartFinder::find(double limit_m, double price) {
   if (parts_.size() < 2) return found;
   std::uint32_t largest = none;  // told when the first part is to be measured
   for (std::uint32_t id = 0; id < parts_.size(); ++id) {
-    const std::vector<FaceId>& faces = parts_[id];
+    const std::span<const FaceId> faces = parts_[id];
     if (faces.size() > most_part_faces) continue;
-    Known& known = known_[faces.front()];
+    std::uint32_t& known_of = known_of_[faces.front()];
+    if (known_of == none) {
+      known_of = static_cast<std::uint32_t>(known_.size());
+      known_.emplace_back();
+    }
+    Known& known = known_[known_of];
     // A part that has lost faces since costs more for each of those left.
     if (known.key > price) continue;
     if (largest == none) {
@@ -321,10 +332,10 @@ std::vector<Part> PartFinder::find(double limit_m, double price) {
     id_ = id;
     if (known.measured && known.support_state == support_state(known.part)) {
       part_ = known.part;
-      part_.faces = faces;
+      part_.faces.assign(faces.begin(), faces.end());
     } else {
       part_ = {};
-      part_.faces = faces;
+      part_.faces.assign(faces.begin(), faces.end());
       if (!measure(limit_m, price, known)) continue;
     }
     if (part_.error_m > limit_m || closes_opening(limit_m)) continue;

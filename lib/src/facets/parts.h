@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "facets/face_groups.h"
 #include "facets/facet_mesh.h"
 #include "facets/pieces.h"
 #include "facets/surroundings.h"
@@ -32,14 +33,14 @@ class PartFinder {
 
   // To be called when faces may have been sewn to other parts.
   void split();
-  [[nodiscard]] const std::vector<std::vector<FaceId>>& parts() const noexcept { return parts_; }
+  [[nodiscard]] const FaceGroups& parts() const noexcept { return parts_; }
 
   // All parts but that of the most area whose every point is within `limit_m` of the rest and that cost at most `price`
   // a face, the cheapest first.
   [[nodiscard]] std::vector<Part> find(double limit_m, double price);
 
   // The faces that hang together with this one, as of the last call of find() or of the start.
-  [[nodiscard]] const std::vector<FaceId>& part_of(FaceId f) const { return parts_[part_of_[f]]; }
+  [[nodiscard]] std::span<const FaceId> part_of(FaceId f) const { return parts_[part_of_[f]]; }
   [[nodiscard]] bool same_part(FaceId f, FaceId g) const { return part_of_[f] == part_of_[g]; }
 
  private:
@@ -52,7 +53,7 @@ class PartFinder {
     Part part;
   };
   [[nodiscard]] std::uint32_t largest_part() const;
-  [[nodiscard]] std::uint64_t state_of(const std::vector<FaceId>& faces) const;
+  [[nodiscard]] std::uint64_t state_of(std::span<const FaceId> faces) const;
   enum class Look : std::uint8_t { FromCorners, Everywhere };
   [[nodiscard]] bool measure(double limit_m, double price, Known& known);
   [[nodiscard]] double cost_of(const Face& face, Look look, double limit_m, double most);
@@ -66,8 +67,8 @@ class PartFinder {
     double distance_m = 0.0;
   };
   [[nodiscard]] bool holds(const Sample& known, const glm::vec3& at, double limit_m) const;
-  [[nodiscard]] double sample(const glm::vec3& at, double limit_m, Sample& known);
-  void sample_corners(double limit_m);
+  [[nodiscard]] double sample(const glm::vec3& at, double limit_m, std::span<const FaceId> hints, Sample& known);
+  void sample_corners(std::span<const FaceId> faces, double limit_m);
   [[nodiscard]] double eroded() const;
   [[nodiscard]] double look_lost() const;
   [[nodiscard]] std::uint64_t support_state(const Part& part) const;
@@ -76,10 +77,11 @@ class PartFinder {
   const FacetMesh& mesh_;
   const Pieces& pieces_;
   Surroundings& around_;
-  std::vector<std::uint32_t> part_of_;      // per face
-  std::vector<std::vector<FaceId>> parts_;  // faces, ascending
-  std::optional<std::uint64_t> edits_;      // there had been when they were found
-  std::vector<Known> known_;                // per face: of the part whose first face it is
+  std::vector<std::uint32_t> part_of_;  // per face
+  FaceGroups parts_;
+  std::optional<std::uint64_t> edits_;  // there had been when they were found
+  std::vector<Known> known_;
+  std::vector<std::uint32_t> known_of_;  // per face: of the part whose first face it is, or none
 
   struct Middle {
     std::uint32_t low = none, high = none;  // ends of the edge

@@ -34,7 +34,7 @@ class Painter {
     mesh_.touched.push_back(f);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t p = mesh_.faces[f].point[k];
-      std::erase(mesh_.faces_of[p], f);
+      mesh_.faces_of[p].erase(f);
       touched_.push_back(p);
     }
   }

@@ -26,10 +26,11 @@ PointCells::PointCells(const FacetMesh& mesh) : mesh_(mesh), seen_at_(mesh.place
 
 void PointCells::sort_points() {
   first_.assign(changed_at_.size() + 1, 0);
-  std::vector<std::uint32_t> cell(mesh_.point_count());
+  cell_.resize(mesh_.point_count());
   for (std::uint32_t p = 0; p < mesh_.point_count(); ++p) {
-    cell[p] = static_cast<std::uint32_t>(index_of(cell_of(mesh_.place[p])));
-    if (!mesh_.faces_of[p].empty()) ++first_[cell[p] + 1];
+    if (mesh_.faces_of[p].empty()) continue;
+    cell_[p] = static_cast<std::uint32_t>(index_of(cell_of(mesh_.place[p])));
+    ++first_[cell_[p] + 1];
   }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   points_.resize(first_.back());
@@ -37,7 +38,7 @@ void PointCells::sort_points() {
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::uint32_t p = 0; p < mesh_.point_count(); ++p) {
     if (mesh_.faces_of[p].empty()) continue;
-    const std::uint32_t i = next[cell[p]]++;
+    const std::uint32_t i = next[cell_[p]]++;
     points_[i] = p;
     at_[i] = mesh_.place[p];
   }

@@ -57,6 +57,7 @@ class PointCells {
   glm::ivec3 count_{1};
   std::vector<std::uint32_t> first_;       // per cell and one past the end
   std::vector<std::uint32_t> points_;      // by cell
+  std::vector<std::uint32_t> cell_;        // per point that is used
   std::vector<glm::vec3> at_;              // of these, where they were at the last update
   std::vector<std::uint32_t> changed_at_;  // per cell
   std::vector<glm::vec3> seen_at_;         // per point, at the last update

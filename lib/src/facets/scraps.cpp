@@ -45,24 +45,22 @@ void ScrapFinder::group() {
       if (count == 1 && other > f && belongs(f, other)) sets.join(f, other);
     }
   }
-  groups_.clear();
+  std::uint32_t count = 0;
   std::vector<std::uint32_t> group_of_root(mesh_.faces.size(), none);
   for (FaceId f = 0; f < mesh_.faces.size(); ++f) {
     group_of_[f] = none;
     if (!mesh_.faces[f].live) continue;
     std::uint32_t& id = group_of_root[sets.find(f)];
-    if (id == none) {
-      id = static_cast<std::uint32_t>(groups_.size());
-      groups_.emplace_back();
-    }
+    if (id == none) id = count++;
     group_of_[f] = id;
-    groups_[id].push_back(f);
   }
+  groups_.sort(group_of_, count);
 }
 
 // Else it is a part of its own.
 bool ScrapFinder::hangs_on_rest(std::uint32_t id) const {
-  return std::any_of(groups_[id].begin(), groups_[id].end(), [&](FaceId f) {
+  const std::span<const FaceId> faces = groups_[id];
+  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) {
     const auto& p = mesh_.faces[f].point;
     return std::any_of(p.begin(), p.end(), [&](std::uint32_t q) {
       const auto& around = mesh_.faces_of[q];
@@ -177,7 +175,7 @@ std::optional<Scrap> ScrapFinder::measure(std::uint32_t id, double price, Known&
   }
   known.key = scrap.cost / count;
   if (known.key > price) return std::nullopt;
-  scrap.faces = groups_[id];
+  scrap.faces.assign(groups_[id].begin(), groups_[id].end());
   std::sort(scrap.support.begin(), scrap.support.end());
   scrap.support.erase(std::unique(scrap.support.begin(), scrap.support.end()), scrap.support.end());
   scrap.error_m = std::hypot(scrap.error_m, deviation_m);

@@ -47,9 +47,9 @@ class ScrapFinder {
 
   const FacetMesh& mesh_;
   Surroundings& around_;
-  std::vector<std::uint32_t> group_of_;      // per face
-  std::vector<std::vector<FaceId>> groups_;  // joined by edges that two faces share, ascending
-  std::vector<Known> known_;                 // per face: of the group whose first face it is
+  std::vector<std::uint32_t> group_of_;  // per face
+  FaceGroups groups_;                    // joined by edges that two faces share, ascending
+  std::vector<Known> known_;             // per face: of the group whose first face it is
 
   // Of the group that is measured:
   struct Corner {

@@ -15,7 +15,7 @@ constexpr double margin_m = 1e-3;         // beside a face that covers
 
 }  // namespace
 
-bool Surroundings::stands(FaceId f) const { return mesh_.faces[f].live && state_[f] == mesh_.state_of(f); }
+bool Surroundings::stands(FaceId f) const { return mesh_.faces[f].live && shape_[f] == mesh_.shape_of(f); }
 
 void Surroundings::add_bundle(Grove& grove, std::span<const FaceId> faces) const {
   Bundle bundle;
@@ -47,22 +47,20 @@ void Surroundings::plant(Grove& grove) const {
   grove.tree = TriangleBvh{ends, indices};
 }
 
-void Surroundings::update(const std::vector<std::vector<FaceId>>& parts, const std::vector<std::uint32_t>& part_of) {
+void Surroundings::update(const FaceGroups& parts, const std::vector<std::uint32_t>& part_of) {
   part_of_ = &part_of;
   if (edits_ == mesh_.edits) return;
   edits_ = mesh_.edits;
-  state_.resize(mesh_.faces.size(), 0);
-  std::size_t live_count = 0;
-  std::size_t young_count = 0;
-  for (const auto& faces : parts) {
-    live_count += faces.size();
-    young_count +=
-        static_cast<std::size_t>(std::count_if(faces.begin(), faces.end(), [&](FaceId f) { return !stands(f); }));
-  }
+  shape_.resize(mesh_.faces.size(), 0);
+  const std::span<const FaceId> all = parts.faces();
+  const auto young_count =
+      static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](FaceId f) { return !stands(f); }));
   const auto gather = [&](Grove& grove, auto wanted) {
-    grove = {};
+    grove.slots.clear();
+    grove.bundles.clear();
     std::vector<FaceId> some;
-    for (const auto& faces : parts) {
+    for (std::uint32_t id = 0; id < parts.size(); ++id) {
+      const std::span<const FaceId> faces = parts[id];
       some.clear();
       const std::size_t most = faces.size() > small_part ? 1 : bundle_faces;
       for (const FaceId f : faces) {
@@ -76,11 +74,9 @@ void Surroundings::update(const std::vector<std::vector<FaceId>>& parts, const s
     }
     plant(grove);
   };
-  if (most_young * young_count > live_count || 2 * live_count < old_.slots.size()) {
-    std::fill(state_.begin(), state_.end(), 0);
-    for (const auto& faces : parts) {
-      for (const FaceId f : faces) state_[f] = mesh_.state_of(f);
-    }
+  if (most_young * young_count > all.size() || 2 * all.size() < old_.slots.size()) {
+    std::fill(shape_.begin(), shape_.end(), 0);
+    for (const FaceId f : all) shape_[f] = mesh_.shape_of(f);
     gather(old_, [](FaceId) { return true; });
     young_ = {};
     return;
@@ -99,36 +95,6 @@ bool Surroundings::visit_others(const Grove& grove, const Bundle& bundle, std::u
     if (slot.face != none && (*part_of_)[slot.face] != part && !visit(slot)) return false;
   }
   return true;
-}
-
-Surroundings::Nearest Surroundings::nearest(const glm::dvec3& p, std::uint32_t part, double limit_m,
-                                            FaceId hint) const {
-  double least = limit_m * limit_m;
-  FaceId face = none;
-  const auto consider = [&](FaceId f, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    const double d = squared_distance_to_triangle(p, glm::dvec3{a}, glm::dvec3{b}, glm::dvec3{c});
-    if (d >= least) return;
-    least = d;
-    face = f;
-  };
-  if (hint != none) {
-    const auto& q = mesh_.faces[hint].point;
-    consider(hint, mesh_.place[q[0]], mesh_.place[q[1]], mesh_.place[q[2]]);
-  }
-  for (const Grove* grove : {&old_, &young_}) {
-    const auto bound = [&] { return least; };
-    grove->tree.visit_boxes(p, bound, [&](FaceId i) {
-      const Bundle& bundle = grove->bundles[i];
-      if (bundle.box.squared_distance(p) >= least) return true;
-      return visit_others(*grove, bundle, part, [&](const Slot& slot) {
-        const auto& [a, b, c] = slot.corner;
-        const auto box = [&] { return FloatBox{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}; };
-        if (bundle.count == 1 || box().squared_distance(p) < least) consider(slot.face, a, b, c);
-        return true;
-      });
-    });
-  }
-  return face == none ? Nearest{} : Nearest{std::sqrt(least), face};
 }
 
 void Surroundings::hint(Query& query, FaceId face) const {

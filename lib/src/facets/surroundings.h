@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "facets/face_groups.h"
 #include "facets/facet_mesh.h"
 #include "facets/float_box.h"
 #include "geometry/bvh.h"
@@ -17,25 +18,19 @@ class Surroundings {
  public:
   explicit Surroundings(const FacetMesh& mesh) : mesh_(mesh) {}
 
-  // To be called when the mesh or what counts as a part has changed. Faces ascending by part; `part_of`, per face, must
-  // live as long as it is asked for.
-  void update(const std::vector<std::vector<FaceId>>& parts, const std::vector<std::uint32_t>& part_of);
+  // To be called when the mesh or what counts as a part has changed; `part_of`, per face, must live as long as it is
+  // asked for.
+  void update(const FaceGroups& parts, const std::vector<std::uint32_t>& part_of);
 
-  struct Nearest {
-    double distance_m = std::numeric_limits<double>::infinity();
-    FaceId face = none;
-  };
-  // Among the faces of other parts nearer than the limit. `hint`: one of these that is likely near, or none.
-  [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t part, double limit_m, FaceId hint) const;
-
-  // The same for many places that lie together, in one go.
+  // What is nearest to a place.
   struct Query {
     glm::vec3 at{0.0F};
     double squared_m = 0.0;  // before: of the limit
-    FaceId face = none;
+    FaceId face = none;      // none: there is nothing within the limit
   };
   // Tells a face of another part that is likely near.
   void hint(Query& query, FaceId face) const;
+  // Among the faces of other parts, for places that lie together, in one walk.
   void nearest(std::span<Query> queries, std::uint32_t part) const;
 
   // Whether a face of another part, before or behind, covers p when one looks along `across`, a unit vector. The hints,
@@ -70,7 +65,7 @@ class Surroundings {
   const std::vector<std::uint32_t>* part_of_ = nullptr;
   std::optional<std::uint64_t> edits_;  // there had been at the last update
   Grove old_, young_;
-  std::vector<std::uint64_t> state_;  // per face when old_ was planted, 0 if it is not in it
+  std::vector<std::uint64_t> shape_;  // per face when old_ was planted, 0 if it is not in it
 };
 
 }  // namespace lodestone::facets

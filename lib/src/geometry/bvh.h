@@ -65,14 +65,8 @@ class TriangleBvh {
         [&](std::uint32_t node) { return node_labels_[node] == label || node_labels_[node] == none; });
   }
 
-  // Calls visit(face) for the triangles in nodes whose boxes lie nearer than bound(), a squared distance that may
-  // shrink meanwhile, nearer ones first, until visit returns false.
-  template <class Bound, class Visit>
-  void visit_boxes(const glm::dvec3& p, Bound bound, Visit visit) const {
-    if (!nodes_.empty()) descend(p, bound, [&](std::uint32_t slot) { return visit(faces_[slot]); });
-  }
-
-  // The same for a box, for many places that lie together.
+  // Calls visit(face) for the triangles in nodes whose boxes lie nearer to this one than bound(), a squared distance
+  // that may shrink meanwhile, nearer ones first, until visit returns false.
   struct Place {
     glm::dvec3 low{0.0}, high{0.0};
   };
