@@ -96,15 +96,19 @@ double OpeningView::farthest_m(double depth_m) const {
   double farthest2 = 0.0;
   for (int i = 0; i < samples * samples; ++i) {
     double nearest2 = std::numeric_limits<double>::infinity();
-    // By rows, from this one on, as long as one may be nearer.
+    const auto look_at = [&](int x, int y, const glm::dvec2& beside) {
+      if (x < 0 || x >= samples) return;
+      const double height_m = height_m_[static_cast<std::size_t>(y) * samples + static_cast<std::size_t>(x)];
+      const glm::dvec3 apart{beside, offset_m_ - height_m - depth_m};
+      nearest2 = std::min(nearest2, glm::dot(apart, apart));
+    };
+    // By rows and columns, from this one on, as long as one may be nearer.
     for (int away = 0; away < samples && away * step.y * away * step.y < nearest2; ++away) {
       for (const int y : {i / samples - away, i / samples + away}) {
         if (y < 0 || y >= samples) continue;
-        for (int x = 0; x < samples; ++x) {
-          const glm::dvec3 apart{
-              step.x * (x - i % samples), step.y * away,
-              offset_m_ - height_m_[static_cast<std::size_t>(y) * samples + static_cast<std::size_t>(x)] - depth_m};
-          nearest2 = std::min(nearest2, glm::dot(apart, apart));
+        for (int side = 0; side < samples && side * step.x * side * step.x < nearest2; ++side) {
+          look_at(i % samples - side, y, {step.x * side, step.y * away});
+          look_at(i % samples + side, y, {step.x * side, step.y * away});
         }
       }
     }
@@ -145,19 +149,29 @@ std::optional<WindowFrame> OpeningView::best_frame(double area_m2, std::size_t f
   WindowFrame best;
   best.cost = std::numeric_limits<double>::infinity();
   const glm::dvec2 size = high_ - low_;
+  constexpr double share = 1.0 / (samples * samples);
+  int steps = 0;
+  while ((steps + 1) * inset_step_m < most_inset_ratio * std::min(size.x, size.y)) ++steps;
+  // Samples of each material that come to lie outside with each step.
+  std::vector<std::uint32_t> count(faces_.size(), 0);
+  std::vector<std::uint32_t> leaving(static_cast<std::size_t>(steps) * faces_.size(), 0);
+  for (int i = 0; i < samples * samples; ++i) {
+    const MaterialId m = seen_[static_cast<std::size_t>(i)];
+    if (m == none) continue;
+    ++count[m];
+    const glm::dvec2 at{i % samples + 0.5, i / samples + 0.5};
+    const glm::dvec2 depth = glm::min(at, double{samples} - at) * size / double{samples};
+    const double step = std::max(0.0, std::ceil(std::min(depth.x, depth.y) / inset_step_m) - 1.0);
+    if (step < steps) ++leaving[static_cast<std::size_t>(step) * faces_.size() + m];
+  }
+  std::vector<std::uint32_t> gone(faces_.size(), 0);
   std::vector<double> inside(faces_.size()), outside(faces_.size());
-  for (int step = 1; step * inset_step_m < most_inset_ratio * std::min(size.x, size.y); ++step) {
+  for (int step = 1; step <= steps; ++step) {
     const double d = step * inset_step_m;
-    std::fill(inside.begin(), inside.end(), 0.0);
-    std::fill(outside.begin(), outside.end(), 0.0);
-    const glm::dvec2 rim = double{samples} * d / size;
-    for (int i = 0; i < samples * samples; ++i) {
-      const MaterialId m = seen_[static_cast<std::size_t>(i)];
-      if (m == none) continue;
-      const int row = i / samples;
-      const glm::dvec2 at{i % samples + 0.5, row + 0.5};
-      const bool in = at.x > rim.x && at.y > rim.y && at.x < samples - rim.x && at.y < samples - rim.y;
-      (in ? inside : outside)[m] += 1.0 / (samples * samples);
+    for (const MaterialId m : materials_) {
+      gone[m] += leaving[static_cast<std::size_t>(step - 1) * faces_.size() + m];
+      inside[m] = share * (count[m] - gone[m]);
+      outside[m] = share * gone[m];
     }
     const Choice pane = best_for(inside, area_m2, pane_faces);
     const Choice frame = best_for(outside, area_m2, frame_faces);
