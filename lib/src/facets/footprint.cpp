@@ -8,8 +8,8 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <set>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "facets/ground_cells.h"

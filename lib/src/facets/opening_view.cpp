@@ -159,7 +159,8 @@ std::optional<WindowFrame> OpeningView::best_frame(double area_m2, std::size_t f
     const MaterialId m = seen_[static_cast<std::size_t>(i)];
     if (m == none) continue;
     ++count[m];
-    const glm::dvec2 at{i % samples + 0.5, i / samples + 0.5};
+    const int row = i / samples;
+    const glm::dvec2 at{i % samples + 0.5, row + 0.5};
     const glm::dvec2 depth = glm::min(at, double{samples} - at) * size / double{samples};
     const double step = std::max(0.0, std::ceil(std::min(depth.x, depth.y) / inset_step_m) - 1.0);
     if (step < steps) ++leaving[static_cast<std::size_t>(step) * faces_.size() + m];
