@@ -124,7 +124,6 @@ void look_controls(const PanelState& state, PanelResult& result) {
   if (ImGui::Checkbox("Textures", &textures)) {
     state.look.coloring = textures ? Coloring::Materials : Coloring::Untextured;
   }
-  ImGui::SameLine();
   if (ImGui::Checkbox("LOD colours", &lod_colors)) {
     state.look.coloring = lod_colors ? Coloring::Lod : Coloring::Materials;
   }
