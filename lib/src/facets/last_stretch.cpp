@@ -23,7 +23,9 @@ constexpr double coarse_step = 2.0;     // so where more faces are left there ar
 constexpr double strict_quota = 0.005;  // of the points in a pass: near to strict order, which few can afford
 constexpr double upright_sine = 0.1;
 constexpr std::size_t most_corners = 8;  // of a window that goes whole
-constexpr double plane_arm_m = 9.0;      // that of the loop's own slides
+constexpr double window_error_m = 0.05;  // of a stage: from there on the price of windows rises with it
+constexpr double held_ratio = 1.333;     // a window that cannot close is held while it is so much larger than that
+constexpr double plane_arm_m = 30.0;     // 9 in the loop
 constexpr double claim_factor = 2.0;     // the engine's claims times this, added to what was claimed before
 constexpr SurfaceTolerance tolerance{.angle_rad = 0.0175, .offset_m = 0.004};
 
@@ -67,7 +69,7 @@ class Rest final : public collapse::Sink {
     double limit_m = first_error_m;
     while (limit_m < last_m && !context.cancelled()) {
       if (stopped_ || mesh_.live_faces <= target) break;
-      const std::vector<std::uint8_t> frozen = close_windows(options, price_ * limit_m / first_error_m);
+      const std::vector<std::uint8_t> frozen = close_windows(options, limit_m);
       drop_dead_faces();
       EdgeCollapseOptions stage = hold_planes(limit_m * limit_m);
       stage.frozen = frozen;
@@ -176,10 +178,11 @@ class Rest final : public collapse::Sink {
     return options;
   }
 
-  // Windows and doors go whole: those worth the price close, the outlines of the dearer ones stay where they are.
-  // Returns for each vertex whether it is on such an outline.
-  [[nodiscard]] std::vector<std::uint8_t> close_windows(const FacetShiftOptions& options, double price) {
+  // Windows and doors go whole: those worth the price close, the outlines of the dearer ones stay where they are, and
+  // of those that cannot close until they are small. Returns for each vertex whether it is on such an outline.
+  [[nodiscard]] std::vector<std::uint8_t> close_windows(const FacetShiftOptions& options, double limit_m) {
     hand_back();
+    const double price = price_ * std::max(1.0, limit_m / window_error_m);
     Openings openings{mesh_, false};
     const auto job_of = [&](const Opening& opening, double most) -> std::optional<OpeningJob> {
       if (!is_window(opening)) return std::nullopt;
@@ -202,7 +205,9 @@ class Rest final : public collapse::Sink {
     take_values();
     std::vector<std::uint8_t> held(mesh_.point_count(), 0);
     for (const Opening& opening : openings.all()) {
-      if (!job_of(opening, std::numeric_limits<double>::infinity())) continue;
+      if (!is_window(opening)) continue;
+      const bool small = opening.size_m() < held_ratio * limit_m;
+      if (small && !job_of(opening, std::numeric_limits<double>::infinity())) continue;
       for (const std::uint32_t p : opening.loop) held[p] = 1;
     }
     std::vector<std::uint8_t> frozen(vertex_.size(), 0);
