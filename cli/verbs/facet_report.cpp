@@ -132,6 +132,7 @@ void report_shifts(const FacetShiftReport& done, Report& report) {
   shifts.set("openings_filled", done.openings_filled);
   shifts.set("parts_vanished", done.parts_vanished);
   shifts.set("scraps_vanished", done.scraps_vanished);
+  shifts.set("hidden_vanished", done.hidden_vanished);
   shifts.set("parts_sunk", done.parts_sunk);
   shifts.set("points_merged", done.points_merged);
   shifts.set("tilting_collapses", done.tilting_collapses);

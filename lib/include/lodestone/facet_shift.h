@@ -141,6 +141,7 @@ struct FacetShiftReport {
   std::uint32_t openings_filled = 0;     ///< flush windows and holes that the wall closed over
   std::uint32_t parts_vanished = 0;      ///< detached parts that went: frames, bars, railings, pipes, antennas
   std::uint32_t parts_sunk = 0;          ///< of these, flat into a plane that they hung on; the others shrank
+  std::uint32_t hidden_vanished = 0;     ///< faces that no picture of the building shows
   std::uint32_t scraps_vanished = 0;     ///< ends of mullions and the like, which hung on the rest by points or edges
   std::uint32_t points_merged = 0;       ///< corner points that slid within their planes onto a neighbour
   std::uint32_t tilting_collapses = 0;   ///< the same where some face had to leave its direction

@@ -19,6 +19,7 @@
 #include "facets/build_log.h"
 #include "facets/crossing.h"
 #include "facets/facet_mesh.h"
+#include "facets/hidden.h"
 #include "facets/joiner.h"
 #include "facets/judge.h"
 #include "facets/kinds.h"
@@ -61,6 +62,7 @@ class Builder {
         around_(mesh_),
         parts_(mesh_, pieces_, around_),
         scraps_(mesh_, around_),
+        hidden_(mesh_),
         block_(mesh_),
         stepped_(mesh_, block_),
         crossings_(mesh_, parts_),
@@ -93,7 +95,7 @@ class Builder {
   [[nodiscard]] bool is_due(std::uint32_t surface, double price) const;
   [[nodiscard]] bool is_stale(std::uint32_t surface, std::uint64_t version, double price) const;
   void vanish_parts(double price);
-  void vanish_scraps(double price);
+  void vanish_scraps(const std::vector<Scrap>& scraps, Going going, std::uint32_t& count);
   bool close_openings(double price);
   [[nodiscard]] std::uint32_t& count_of(OpeningJob::Kind kind) noexcept {
     return kind == OpeningJob::Kind::Recess    ? report_.openings_recessed
@@ -132,6 +134,7 @@ class Builder {
   Surroundings around_;
   PartFinder parts_;
   ScrapFinder scraps_;
+  HiddenFinder hidden_;
   Block block_;
   Block stepped_;  // comes before it, if it exists
   bool closed_ = true;
@@ -420,9 +423,9 @@ void Builder::vanish_parts(double price) {
   }
 }
 
-void Builder::vanish_scraps(double price) {
+void Builder::vanish_scraps(const std::vector<Scrap>& scraps, Going going, std::uint32_t& count) {
   std::vector<std::uint8_t> leant_upon(mesh_.faces.size(), 0);
-  for (const Scrap& scrap : scraps_.find(price)) {
+  for (const Scrap& scrap : scraps) {
     if (done()) break;
     if (scrap.error_m > options_.max_error_m || mesh_.live_faces - scrap.faces.size() <= next_block().face_count())
       continue;
@@ -436,10 +439,10 @@ void Builder::vanish_scraps(double price) {
     for (const FaceId f : scrap.support)
       support.insert(support.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
     pieces_.hand_on(scrap.faces, support);
-    vanish(mesh_, scrap.faces, Going::Shrinking, scrap.error_m, log_);
+    vanish(mesh_, scrap.faces, going, scrap.error_m, log_);
     for (const FaceId f : scrap.faces)
       later_.insert(later_.end(), mesh_.faces[f].point.begin(), mesh_.faces[f].point.end());
-    ++report_.scraps_vanished;
+    ++count;
   }
 }
 
@@ -531,7 +534,8 @@ progressive::EditLog Builder::run(FacetShiftReport& report) {
       any = shift_planes(price);
     }
     if (!done()) vanish_parts(price);
-    if (!done() && !closed_) vanish_scraps(price);
+    if (!done() && !closed_) vanish_scraps(scraps_.find(price), Going::Shrinking, report_.scraps_vanished);
+    if (!done() && !closed_) vanish_scraps(hidden_.find(price), Going::Still, report_.hidden_vanished);
     crossings_.update(mesh_.touched);
     crossings_.start();
     mesh_.touched.clear();

@@ -71,14 +71,14 @@ class DepthBuffer {
   std::vector<double> depths_;
 };
 
-glm::dvec3 spiral_direction(int i) {
-  const double z = 1.0 - (2.0 * i + 1.0) / direction_count;
+}  // namespace
+
+glm::dvec3 spiral_direction(int i, int count) {
+  const double z = 1.0 - (2.0 * i + 1.0) / count;
   const double angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
   const double radius = std::sqrt(1.0 - z * z);
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
-
-}  // namespace
 
 std::vector<std::uint8_t> seen_surfaces(const Mesh& mesh, const CharacteristicSurfaces& surfaces) {
   std::vector<std::uint8_t> seen(surfaces.surfaces.size(), 0);
@@ -93,7 +93,7 @@ std::vector<std::uint8_t> seen_surfaces(const Mesh& mesh, const CharacteristicSu
   };
   DepthBuffer buffer{box};
   for (int i = 0; i < direction_count; ++i) {
-    buffer.look(spiral_direction(i));
+    buffer.look(spiral_direction(i, direction_count));
     for (FaceId f = 0; f < mesh.triangle_count(); ++f) {
       if (!mesh.materials[mesh.face_material(f)].transparent()) buffer.draw(corners(f));
     }

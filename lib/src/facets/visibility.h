@@ -14,4 +14,7 @@ namespace lodestone::facets {
 // unseen. O(directions * (faces + pixels)).
 [[nodiscard]] std::vector<std::uint8_t> seen_surfaces(const Mesh& mesh, const CharacteristicSurfaces& surfaces);
 
+// The one of `count` that are spread evenly over the sphere.
+[[nodiscard]] glm::dvec3 spiral_direction(int i, int count);
+
 }  // namespace lodestone::facets
