@@ -48,7 +48,10 @@ int exif_orientation(ByteSpan exif) {
   for (std::size_t i = 0; i < entries; ++i) {
     const std::size_t at = directory + 2 + 12 * i;
     if (at + 12 > tiff.size()) return 1;
-    if (u16(tiff, at, little) == 0x0112) return static_cast<int>(u16(tiff, at + 8, little));
+    if (u16(tiff, at, little) != 0x0112) continue;
+    const unsigned orientation = u16(tiff, at + 8, little);
+    constexpr unsigned last = 8;
+    return orientation >= 1 && orientation <= last ? static_cast<int>(orientation) : 1;
   }
   return 1;
 }

@@ -88,6 +88,10 @@ Result<Image> decode_png(ByteSpan bytes, std::uint64_t max_pixels) {
     if (code == SPNG_EMEM) return no_memory_for(header.width, header.height);
     return png_error("the PNG data is damaged or cut off", code);
   }
+  // The checksum of the last rows, and the mark of the end, lie behind what the pixels need.
+  if (const int code = spng_decode_chunks(handle.get()); code != 0) {
+    return png_error("the PNG data is damaged or cut off", code);
+  }
   if (grey) image = narrowed_to_grey(image);
   return image;
 }

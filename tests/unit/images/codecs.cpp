@@ -8,6 +8,7 @@
 #include <lodestone/formats.h>
 
 #include "data.h"
+#include "images/codecs.h"
 
 using namespace lodestone;
 
@@ -48,9 +49,8 @@ Bytes with_orientation(const Bytes& jpeg, int orientation, bool little) {
                          ? Bytes{'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x12, 1, 3, 0, 1, 0, 0, 0, o, 0, 0, 0, 0, 0, 0, 0}
                          : Bytes{'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 0x12, 0, 3, 0, 0, 0, 1, 0, o, 0, 0, 0, 0, 0, 0};
   exif.insert(exif.end(), tiff.begin(), tiff.end());
-  Bytes out(jpeg.begin(), jpeg.begin() + 2);
-  out.insert(out.end(), exif.begin(), exif.end());
-  out.insert(out.end(), jpeg.begin() + 2, jpeg.end());
+  Bytes out = jpeg;
+  out.insert(out.begin() + 2, exif.begin(), exif.end());
   return out;
 }
 
@@ -119,6 +119,27 @@ TEST_CASE("EXIF orientation is undone for all eight values and both byte orders"
   }
 }
 
+TEST_CASE("an EXIF orientation that does not exist leaves the picture as it is stored") {
+  const Image image = picture(48, 32, 3);
+  const auto plain = encode_jpeg(image, 98);
+  REQUIRE(plain.ok());
+  const auto upright = decode_image(*plain, "plain.jpg");
+  REQUIRE(upright.ok());
+  for (const int orientation : {0, 9, 10, 200}) {
+    for (const bool little : {false, true}) {
+      CAPTURE(orientation, little);
+      const Bytes odd = with_orientation(*plain, orientation, little);
+      const auto head = image_head(odd, odd.size(), "odd.jpg", 1U << 20);
+      REQUIRE(head.ok());
+      CHECK(head->size == glm::uvec2{48, 32});
+      const auto read = decode_image(odd, "odd.jpg");
+      REQUIRE(read.ok());
+      CHECK(read->width == 48);
+      CHECK(read->pixels == upright->pixels);
+    }
+  }
+}
+
 TEST_CASE("CMYK JPEG becomes RGB") {
   // Adobe's inverted ink (TurboJPEG writes the Adobe marker): 255, 0, 0, 255 is full magenta and yellow: red.
   Bytes ink;
@@ -176,6 +197,28 @@ TEST_CASE("cut or damaged images are errors that name the file") {
   check_all_cuts(encode_png(image).value(), "cut.png");
   check_all_cuts(encode_jpeg(image).value(), "cut.jpg");
   check_all_cuts(encode_webp(image).value(), "cut.webp");
+}
+
+TEST_CASE("a PNG with any byte of its pixels changed, or without its end, is damaged") {
+  for (const std::uint32_t channels : {1U, 4U}) {
+    Bytes bytes = encode_png(picture(64, 64, channels)).value();
+    const std::string marks(bytes.begin(), bytes.end());
+    const std::size_t first = marks.find("IDAT");
+    const std::size_t end = marks.rfind("IEND") - 4;
+    REQUIRE(first < end);
+    for (std::size_t at = first + 4; at < end; ++at) {  // the checksum behind the pixels, too
+      bytes[at] ^= 0x40;
+      CAPTURE(channels, at);
+      CHECK(decode_image(bytes, "flipped.png").error().code == ErrorCode::BadData);
+      bytes[at] ^= 0x40;
+    }
+    for (const std::size_t size : {end, end + 4, end + 7}) {
+      CAPTURE(channels, size, end);
+      CHECK_FALSE(decode_image(std::span{bytes}.first(size), "endless.png").ok());
+    }
+    bytes.insert(bytes.end(), 100, std::uint8_t{7});  // of no chunk
+    CHECK(decode_image(bytes, "trail.png").ok());
+  }
 }
 
 TEST_CASE("an image over the pixel limit is refused before it is unpacked") {

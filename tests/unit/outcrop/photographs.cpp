@@ -196,6 +196,9 @@ TEST_CASE("A photograph that is missing, empty, cut off or no image leaves its f
   write_bytes(folder / "cut.jpg", half_of(*jpeg));
   write_bytes(folder / "cut.png", half_of(*png));
   write_bytes(folder / "head.jpg", {jpeg->begin(), jpeg->begin() + 30});
+  std::vector<std::uint8_t> flipped = *png;
+  flipped[flipped.size() / 2] ^= 1U;
+  write_bytes(folder / "flipped.png", flipped);
   std::vector<std::uint8_t> wide = *png;
   std::fill_n(wide.begin() + 16, 8, std::uint8_t{0x7F});  // 2139062143 pixels each way
   write_bytes(folder / "wide.png", wide);
@@ -207,8 +210,8 @@ TEST_CASE("A photograph that is missing, empty, cut off or no image leaves its f
   plain[12] = plain[14] = 64;
   plain[16] = 24;
   write_bytes(folder / "cut.tga", plain);
-  for (const char* name :
-       {"missing.jpg", "empty.jpg", "text.jpg", "cut.jpg", "cut.png", "head.jpg", "wide.png", "wide.gif", "cut.tga"}) {
+  for (const char* name : {"missing.jpg", "empty.jpg", "text.jpg", "cut.jpg", "cut.png", "flipped.png", "head.jpg",
+                           "wide.png", "wide.gif", "cut.tga"}) {
     INFO(name);
     const Mesh mesh = grid_with(folder / name);
     const auto written = write_outcrop(mesh, folder / "tiles", options());
