@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 
 #include "reader.h"
@@ -41,6 +42,28 @@ std::optional<std::filesystem::path> find_any_case(const std::filesystem::path& 
   }
   if (std::filesystem::is_regular_file(at, error)) return at;
   return std::nullopt;
+}
+
+// "file:///a%20b.jpg", or with a host's name before the third slash, is "/a b.jpg".
+std::string without_scheme(std::string_view name) {
+  constexpr std::string_view scheme = "file://";
+  if (!name.starts_with(scheme)) return std::string{name};
+  name.remove_prefix(std::min(name.find('/', scheme.size()), name.size()));
+  std::string path;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned char code = 0;
+    constexpr std::size_t digits = 2;
+    constexpr int hexadecimal = 16;
+    const char* first = name.data() + i + 1;
+    if (name[i] == '%' && i + digits < name.size() &&
+        std::from_chars(first, first + digits, code, hexadecimal).ptr == first + digits) {
+      path.push_back(static_cast<char>(code));
+      i += digits;
+    } else {
+      path.push_back(name[i]);
+    }
+  }
+  return path;
 }
 
 }  // namespace
@@ -103,7 +126,7 @@ Result<std::vector<std::uint8_t>> Input::read_all() const {
 }
 
 std::optional<std::filesystem::path> find_beside(const std::filesystem::path& folder, std::string_view name) {
-  std::string clean{name};
+  std::string clean = without_scheme(name);
   std::replace(clean.begin(), clean.end(), '\\', '/');
   while (!clean.empty() && (clean.back() == ' ' || clean.back() == '\r')) clean.pop_back();
   if (clean.empty() || clean.size() > 4096 || clean.find('\0') != std::string::npos) return std::nullopt;
@@ -114,6 +137,7 @@ std::optional<std::filesystem::path> find_beside(const std::filesystem::path& fo
   } else if (auto found = find_any_case(folder, path)) {
     return found;
   }
+  if (auto found = find_any_case(folder, path.parent_path().filename() / path.filename())) return found;
   if (auto found = find_any_case(folder, path.filename())) return found;
   return find_any_case(folder, std::filesystem::path{"textures"} / path.filename());
 }

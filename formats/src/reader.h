@@ -52,8 +52,9 @@ class Input {
   std::span<const std::uint8_t> bytes_;
 };
 
-// Finds a file that another one names: backslashes, wrong case and absolute paths of another machine are forgiven;
-// tried are the name under `folder`, then its last part there and in `folder`/textures. Empty if there is none.
+// Finds a file that another one names: backslashes, wrong case, file:// and absolute paths of another machine are
+// forgiven; tried are the name under `folder`, then its last two parts, then its last part there and in
+// `folder`/textures. Empty if there is none.
 [[nodiscard]] std::optional<std::filesystem::path> find_beside(const std::filesystem::path& folder,
                                                                std::string_view name);
 
@@ -70,9 +71,11 @@ class Warnings {
 };
 
 // Adds the texture that `name` refers to, loaded as `options.textures` asks, or finds it among those already there.
-// A missing or broken file is a warning and gives `none`.
-[[nodiscard]] std::uint32_t add_texture_file(Mesh& mesh, const std::string& name, const std::filesystem::path& folder,
-                                             const ReadOptions& options, Warnings& warnings);
+// A missing or broken file is a warning and gives `none`; a missing one is said to be named at `place`, else in the
+// model.
+[[nodiscard]] std::uint32_t add_texture_file(Mesh& mesh, const std::string& name, const Input& model,
+                                             const ReadOptions& options, Warnings& warnings,
+                                             const std::string& place = {});
 // The same for bytes that came inside the model file.
 [[nodiscard]] std::uint32_t add_texture_bytes(Mesh& mesh, const std::string& name, std::vector<std::uint8_t> bytes,
                                               const ReadOptions& options, Warnings& warnings);

@@ -112,7 +112,7 @@ MaterialId CityBuilder::material(const Look& look) {
     Material material{.name = look.name};
     material.base_color = look.color;
     if (!look.texture_uri.empty()) {
-      material.texture = add_texture_file(mesh_, look.texture_uri, input_.folder(), options_, warnings_);
+      material.texture = add_texture_file(mesh_, look.texture_uri, input_, options_, warnings_);
     }
     mesh_.materials.push_back(std::move(material));
   }

@@ -33,12 +33,15 @@ std::uint32_t add_texture(Mesh& mesh, Texture texture, Bytes bytes, const ReadOp
 
 }  // namespace
 
-std::uint32_t add_texture_file(Mesh& mesh, const std::string& name, const std::filesystem::path& folder,
-                               const ReadOptions& options, Warnings& warnings) {
+std::uint32_t add_texture_file(Mesh& mesh, const std::string& name, const Input& model, const ReadOptions& options,
+                               Warnings& warnings, const std::string& place) {
   if (const std::uint32_t known = find_texture(mesh, name); known != none) return known;
-  const auto file = find_beside(folder, name);
+  const auto file = find_beside(model.folder(), name);
   if (!file) {
-    warnings.add("the texture \"" + name + "\" is missing", folder.string());
+    std::error_code error;
+    const bool is_folder = !name.empty() && std::filesystem::is_directory(model.folder() / name, error);
+    warnings.add("the texture \"" + name + (is_folder ? "\" is a folder" : "\" is missing"),
+                 place.empty() ? model.name() : place);
     return none;
   }
   Texture texture;

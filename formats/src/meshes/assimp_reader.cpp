@@ -145,7 +145,7 @@ std::uint32_t SceneReader::texture_of(const aiMaterial& material) {
   }
   const std::string name = text_of(path);
   if (const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str())) return embedded_texture(*embedded, name);
-  return add_texture_file(mesh_, name, input_.folder(), options_, warnings_);
+  return add_texture_file(mesh_, name, input_, options_, warnings_);
 }
 
 void SceneReader::add_materials() {

@@ -183,7 +183,7 @@ std::uint32_t GltfReader::texture_of(int index) {
   const tinygltf::Image& image = model_.images[source];
   if (!image.uri.empty()) {
     if (find_beside(input_.folder(), image.uri)) {
-      return add_texture_file(mesh_, image.uri, input_.folder(), options_, warnings_);
+      return add_texture_file(mesh_, image.uri, input_, options_, warnings_);
     }
     if (image.image.empty()) {
       warnings_.add("the texture \"" + image.uri + "\" is missing", input_.name());

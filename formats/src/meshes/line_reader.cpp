@@ -41,6 +41,10 @@ bool LineReader::refill() {
       std::memchr(buffer_.data(), '\r', got) != nullptr) {
     line_end_ = '\r';
   }
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (file_offset_ == 0 && std::string_view{buffer_.data(), got}.starts_with(byte_order_mark)) {
+    begin_ = byte_order_mark.size();
+  }
   end_ += got;
   file_offset_ += got;
   context_.report("reading", static_cast<double>(file_offset_) / static_cast<double>(input_.size()));
@@ -100,6 +104,12 @@ std::string_view Words::rest() noexcept {
   const std::string_view text{at_, static_cast<std::size_t>(last - at_)};
   at_ = end_;
   return text;
+}
+
+std::string_view Words::file_name() noexcept {
+  const std::string_view text = rest();
+  const std::size_t end = text.empty() || text.front() != '"' ? text.npos : text.find('"', 1);
+  return end == text.npos ? text : text.substr(1, end - 1);
 }
 
 template <class Number>

@@ -57,6 +57,8 @@ class Words {
   }
   // Everything that is left, without blanks around it.
   [[nodiscard]] std::string_view rest() noexcept;
+  // The file's name that is left: what stands in quotes, else the rest.
+  [[nodiscard]] std::string_view file_name() noexcept;
   // The next word as a number; false, and nothing consumed, if it is none. Infinite where out of range.
   [[nodiscard]] bool number(float& value) noexcept;
   [[nodiscard]] bool number(double& value) noexcept;

@@ -12,11 +12,11 @@ namespace {
 float share(float value) { return std::isfinite(value) ? std::clamp(value, 0.0F, 1.0F) : 1.0F; }
 
 // A texture statement: options with their values, then the file's name, which may hold blanks.
-std::string texture_name(Words& words, Warnings& warnings, const std::string& place) {
+std::string_view texture_name(Words& words, Warnings& warnings, const std::string& place) {
   for (;;) {
     Words ahead = words;
     const std::string_view option = ahead.next();
-    if (option.size() < 2 || option.front() != '-') return std::string{words.rest()};
+    if (option.size() < 2 || option.front() != '-') return words.file_name();
     words = ahead;
     if (option == "-s" || option == "-o" || option == "-t") {
       float ignored = 0.0F;
@@ -37,9 +37,39 @@ bool word_is(std::string_view word, std::string_view lower_case) {
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
 }
 
+// A name may hold " #", so what follows is a comment only where the file is found without it. Who has the library in
+// a folder of its own names textures from there.
+std::string known_from(const std::filesystem::path& model_folder, const Input& library, std::string_view text) {
+  const auto before = [&](std::size_t comment) { return Words{text.substr(0, comment)}.rest(); };
+  for (const std::string_view name :
+       {text, before(text.rfind(" #")), before(text.find(" #")), before(text.find("\t#"))}) {
+    if (library.folder() != model_folder) {
+      if (const auto file = find_beside(library.folder(), name)) {
+        const auto relative = file->lexically_relative(model_folder);
+        return relative.empty() ? file->string() : relative.string();
+      }
+    }
+    if (find_beside(model_folder, name)) return std::string{name};
+  }
+  return std::string{text};
+}
+
 }  // namespace
 
-void read_mtl(const Input& input, const Context& context, MtlLibrary& library, Warnings& warnings) {
+std::vector<std::string> library_names(const std::filesystem::path& model_folder, std::string_view text) {
+  Words words{text};
+  const std::string all{words.file_name()};
+  std::vector<std::string> names;
+  Words parts{all};
+  for (std::string_view part = parts.next(); !part.empty() && part.front() != '#'; part = parts.next()) {
+    names.emplace_back(part);
+  }
+  if (names.empty() || find_beside(model_folder, all)) return {all};
+  return names;
+}
+
+void read_mtl(const Input& input, const std::filesystem::path& model_folder, const Context& context,
+              MtlLibrary& library, Warnings& warnings) {
   LineReader lines{input, context};
   std::string_view line;
   MtlMaterial unused;
@@ -73,7 +103,8 @@ void read_mtl(const Input& input, const Context& context, MtlLibrary& library, W
       float through = 0.0F;
       if (words.number(through) && !has_d) material->color.a = 1.0F - share(through);
     } else if (word_is(key, "map_kd")) {
-      material->texture = texture_name(words, warnings, lines.place());
+      material->place = lines.place();
+      material->texture = known_from(model_folder, input, texture_name(words, warnings, material->place));
     } else if (word_is(key, "map_d")) {
       material->has_mask = true;
     }

@@ -78,10 +78,13 @@ class Counter {
     MtlLibrary library;
     Warnings told_when_read;
     constexpr std::uint64_t most_bytes = 1U << 26U;
-    for (const std::string& name : libraries_) {
-      const auto file = find_beside(input.folder(), name);
-      if (!file) continue;
-      if (const auto text = Input::open(*file, most_bytes); text) read_mtl(*text, context, library, told_when_read);
+    for (const std::string& line : libraries_) {
+      for (const std::string& name : library_names(input.folder(), line)) {
+        const auto file = find_beside(input.folder(), name);
+        if (!file) continue;
+        const auto text = Input::open(*file, most_bytes);
+        if (text) read_mtl(*text, input.folder(), context, library, told_when_read);
+      }
     }
     std::set<std::filesystem::path> files;
     for (const auto& [name, material] : library) {

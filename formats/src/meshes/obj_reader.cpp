@@ -296,17 +296,8 @@ void ObjReader::use_material(std::string_view name) {
   material_ids_.emplace(name, material_);
 }
 
-// Names may hold blanks, or be several: the whole rest of the line is tried first.
 void ObjReader::load_library(Words& words) {
-  const std::string all{words.rest()};
-  std::vector<std::string> names{all};
-  if (!find_beside(input_.folder(), all)) {
-    Words parts{all};
-    std::vector<std::string> found;
-    for (std::string_view part = parts.next(); !part.empty(); part = parts.next()) found.emplace_back(part);
-    if (found.size() > 1) names = std::move(found);
-  }
-  for (const std::string& name : names) {
+  for (const std::string& name : library_names(input_.folder(), words.rest())) {
     const auto file = find_beside(input_.folder(), name);
     auto library = file ? Input::open(*file, options_.max_file_bytes)
                         : Result<Input>{Error{ErrorCode::NotFound, "there is no such file", name}};
@@ -314,7 +305,7 @@ void ObjReader::load_library(Words& words) {
       warnings_.add("the material library \"" + name + "\" cannot be read: " + library.error().message, lines_.place());
       continue;
     }
-    read_mtl(*library, context_, library_, warnings_);
+    read_mtl(*library, input_.folder(), context_, library_, warnings_);
   }
 }
 
@@ -367,7 +358,7 @@ void ObjReader::finish_materials() {
     }
     material.base_color = found->second.color;
     if (found->second.texture.empty()) continue;
-    material.texture = add_texture_file(mesh_, found->second.texture, input_.folder(), options_, warnings_);
+    material.texture = add_texture_file(mesh_, found->second.texture, input_, options_, warnings_, found->second.place);
     if (found->second.has_mask) material.alpha_cutoff = 0.5F;
   }
 }

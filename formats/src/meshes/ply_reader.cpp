@@ -476,7 +476,7 @@ void PlyReader::add_materials() {
     Material material;
     material.name = count == 1 ? "default" : "texture" + std::to_string(i);
     if (i < header_.textures.size()) {
-      material.texture = add_texture_file(mesh_, header_.textures[i], input_.folder(), options_, warnings_);
+      material.texture = add_texture_file(mesh_, header_.textures[i], input_, options_, warnings_);
     }
     mesh_.materials.push_back(std::move(material));
   }

@@ -154,6 +154,89 @@ TEST_CASE("obj: materials come from the library, whatever options, case and slas
   }
 }
 
+TEST_CASE("obj: textures are found by names in quotes, with comments, as addresses and from other machines") {
+  const auto folder = test::scratch_folder("obj_texture_names");
+  const Image image{2, 1, 3, {1, 2, 3, 4, 5, 6}};
+  std::filesystem::create_directories(folder / "tex");
+  for (const char* name : {"tex/p 0.png", "tex/a #1.png", "beside.png"}) {
+    REQUIRE(write_image(image, folder / name).ok());
+  }
+  const std::string place = std::filesystem::absolute(folder).string();
+  const std::pair<std::string, const char*> cases[] = {{"tex/p 0.png # photograph", "tex/p 0.png"},
+                                                       {"tex/p 0.png\t#photograph", "tex/p 0.png"},
+                                                       {"tex/a #1.png", "tex/a #1.png"},
+                                                       {"tex/a #1.png # first", "tex/a #1.png"},
+                                                       {"\"tex/p 0.png\"", "tex/p 0.png"},
+                                                       {"-clamp on \"tex/p 0.png\" # quoted", "tex/p 0.png"},
+                                                       {"file://" + place + "/tex/p%200.png", "tex/p 0.png"},
+                                                       {"file://localhost" + place + "/tex/p 0.png", "tex/p 0.png"},
+                                                       {"file:///C:/lost/beside.png", "beside.png"},
+                                                       {"C:\\photos\\tex\\p 0.png", "tex/p 0.png"},
+                                                       {"/no/such/place/beside.png", "beside.png"}};
+  for (const auto& [written, file] : cases) {
+    CAPTURE(written);
+    test::write_text(folder / "my stone.mtl", "newmtl m\nmap_Kd " + written + "\n");
+    for (const char* library : {"my stone.mtl", "\"my stone.mtl\""}) {
+      const std::string text = with_square(std::string{"mtllib "} + library + "\nusemtl m\nf 1 2 3\n");
+      const auto read = read_text(text, (folder / "a.obj").string(), {}, folder);
+      REQUIRE(read.ok());
+      CHECK(read.warnings().empty());
+      REQUIRE(read->mesh.textures.size() == 1);
+      CHECK(std::filesystem::equivalent(read->mesh.textures[0].path, folder / file));
+    }
+  }
+}
+
+TEST_CASE("obj: a library in a folder of its own names its textures from there, or from the model's folder") {
+  const auto folder = test::scratch_folder("obj_library_folder");
+  std::filesystem::create_directories(folder / "looks");
+  for (const char* name : {"looks/near.png", "looks/both.png", "both.png", "far.png"}) {
+    REQUIRE(write_image(Image{1, 1, 3, {1, 2, 3}}, folder / name).ok());
+  }
+  test::write_text(folder / "looks" / "a.mtl",
+                   "newmtl a\nmap_Kd near.png\nnewmtl b\nmap_Kd both.png\nnewmtl c\nmap_Kd far.png\n");
+  const auto read = read_text(with_square("mtllib looks/a.mtl # of the church\n"
+                                          "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n"),
+                              (folder / "a.obj").string(), {}, folder);
+  REQUIRE(read.ok());
+  CHECK(read.warnings().empty());
+  REQUIRE(read->mesh.textures.size() == 3);
+  const char* files[] = {"looks/near.png", "looks/both.png", "far.png"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(std::filesystem::equivalent(read->mesh.textures[i].path, folder / files[i]));
+  }
+}
+
+TEST_CASE("obj: a byte order mark before the model and before its library costs neither its first line") {
+  const auto folder = test::scratch_folder("obj_mark");
+  test::write_text(folder / "a.mtl", "\xEF\xBB\xBFnewmtl m\nKd 0 0 1\n");
+  const auto read = read_text("\xEF\xBB\xBFmtllib a.mtl\n" + with_square("usemtl m\nf 1 2 3\n"),
+                              (folder / "a.obj").string(), {}, folder);
+  REQUIRE(read.ok());
+  CHECK(read.warnings().empty());
+  CHECK(read->mesh.materials.front().base_color == glm::vec4(0, 0, 1, 1));
+  const auto first = read_text("\xEF\xBB\xBF" + with_square("f 1 2 3\n"), "a.obj");
+  REQUIRE(first.ok());
+  CHECK(first->mesh.triangle_count() == 1);
+  CHECK(read_text("\xEF\xBB\xBF", "a.obj").error().code == ErrorCode::BadData);
+}
+
+TEST_CASE("obj: what is said of a texture that is missing, or is a folder, names the line that asks for it") {
+  const auto folder = test::scratch_folder("obj_texture_lost");
+  std::filesystem::create_directories(folder / "tex" / "dir.jpg");
+  test::write_text(folder / "a.mtl",
+                   "newmtl m\nmap_Kd lost.jpg # photograph\nnewmtl n\nKd 1 1 1\nmap_Kd tex/dir.jpg\n");
+  const auto read = read_text(with_square("mtllib a.mtl\nusemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n"),
+                              (folder / "a.obj").string(), {}, folder);
+  REQUIRE(read.ok());
+  REQUIRE(read.warnings().size() == 2);
+  const std::string library = (folder / "a.mtl").string();
+  CHECK(read.warnings()[0].message == "the texture \"lost.jpg # photograph\" is missing");
+  CHECK(read.warnings()[0].where == library + ", line 2");
+  CHECK(read.warnings()[1].message == "the texture \"tex/dir.jpg\" is a folder");
+  CHECK(read.warnings()[1].where == library + ", line 5");
+}
+
 TEST_CASE("obj: a texture that is no image is a warning") {
   const auto folder = test::scratch_folder("obj_bad_texture");
   test::write_text(folder / "a.mtl", "newmtl m\nmap_Kd a.jpg\nnewmtl n\nmap_Kd b.jpg\n");
