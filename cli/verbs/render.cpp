@@ -13,6 +13,8 @@
 namespace lodestone::cli {
 namespace {
 
+constexpr double default_error_px = 1.0;
+
 class Render final : public Verb {
  public:
   [[nodiscard]] std::string name() const override { return "render"; }
@@ -24,6 +26,7 @@ class Render final : public Verb {
   [[nodiscard]] Status run(Session& session) override;
 
  private:
+  [[nodiscard]] Status check_error_px() const;
   [[nodiscard]] Result<render::Picture> draw(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_model(Session& session, const render::RenderOptions& options) const;
   [[nodiscard]] Result<render::Picture> draw_tiles(Session& session, const render::RenderOptions& options) const;
@@ -39,7 +42,7 @@ class Render final : public Verb {
   bool wireframe_ = false;
   bool lod_colors_ = false;
   bool cluster_colors_ = false;
-  double error_px_ = 1.0;
+  std::optional<double> error_px_;
   bool untextured_ = false;
   bool white_ = false;
   bool unlit_ = false;
@@ -59,7 +62,8 @@ void Render::declare(Arguments& arguments) {
   arguments.flag("--wireframe", wireframe_, "Draw triangle edges over the surface");
   arguments.flag("--lod-colors", lod_colors_, "Colour by triangle size: blue is fine, red is coarse");
   arguments.flag("--cluster-colors", cluster_colors_, "A colour for each cluster of a .lodg file");
-  arguments.number("--error-px", error_px_, 1e-3, 1e6, "Of a .lodg file: error on the screen that is allowed, pixels");
+  arguments.number("--error-px", error_px_, 1e-3, 1e6,
+                   "Error on the screen that is allowed, in pixels, of a .lodg file or tiles; 1 if not given");
   arguments.flag("--untextured", untextured_, "Leave textures out");
   arguments.flag("--unlit", unlit_, "Colours as they are, without lamps; how tilesets with photographs are drawn");
   arguments.flag("--lit", lit_, "Under lamps, how everything else is drawn");
@@ -92,13 +96,23 @@ Result<render::Picture> Render::draw_model(Session& session, const render::Rende
   return render::render_level(*model, *level, options);
 }
 
-// The tiles that this camera needs, none coarser than a pixel.
+// Refused where nothing is chosen by it. A file that is not there is left to those that read it.
+Status Render::check_error_px() const {
+  const std::filesystem::path& file = input_.file();
+  if (!error_px_ || is_tileset_file(file) || is_cluster_file(file)) return Done{};
+  std::error_code fault;
+  if (!std::filesystem::exists(file, fault)) return Done{};
+  return Error{ErrorCode::BadArgument, "--error-px needs a .lodg file, tileset.json or .osgb root, leave it out",
+               file.string()};
+}
+
+// The tiles that this camera needs.
 Result<render::Picture> Render::draw_tiles(Session& session, const render::RenderOptions& options) const {
   std::optional<TileCacheOptions> cache;
   if (!cache_.empty()) cache = TileCacheOptions{.folder = cache_, .max_bytes = cache_bytes_};
   const auto pyramid = TilePyramid::open(input_.file(), cache);
   if (!pyramid) return pyramid.error();
-  auto picture = render::render_tiles(*pyramid, options);
+  auto picture = render::render_tiles(*pyramid, options, {.error_px = error_px_.value_or(default_error_px)});
   if (!picture) return Error{picture.error().code, picture.error().message, input_.file().string()};
   session.report().set("tiles", picture->tiles);
   if (cache) session.report().set("cached_tiles", (*pyramid)->cache_status().hits);
@@ -109,7 +123,7 @@ Result<render::Picture> Render::draw_tiles(Session& session, const render::Rende
 Result<render::Picture> Render::draw_clusters(const render::RenderOptions& options) const {
   const auto file = ClusterFile::open(input_.file());
   if (!file) return file.error();
-  return render::render_clusters(*file, options, error_px_);
+  return render::render_clusters(*file, options, error_px_.value_or(default_error_px));
 }
 
 Result<render::Picture> Render::draw(Session& session, const render::RenderOptions& options) const {
@@ -120,6 +134,7 @@ Result<render::Picture> Render::draw(Session& session, const render::RenderOptio
   if (!plan_.empty() && !level_.is_perceptual()) {
     return Error{ErrorCode::BadArgument, "--plan needs --perceptual, which says from how far away", ""};
   }
+  if (auto meant = check_error_px(); !meant) return meant.error();
   if (is_model_file(input_.file())) return draw_model(session, options);
   if (level_.ways() > 0 || sheet_levels_ > 0) {
     return Error{ErrorCode::BadArgument, "levels are chosen from a .lode file, build one first",

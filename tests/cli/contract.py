@@ -272,6 +272,25 @@ class Keys(Contract):
                            "--eye", "30,-30,20", "--target", "0,0,3", "--fov", 50, "-o", out)
         self.assertLessEqual(coarse["triangles"], 400)
 
+    def test_render_draws_coarser_where_more_error_is_allowed(self):
+        cliff = self.scratch / "cliff.obj"
+        run("generate", "outcrop", "--triangles", 5000, "--texture-size", 64, "-o", cliff)
+        self.json("outcrop", cliff, "-o", self.scratch / "tiles", "--tile-bytes", "20KB")
+        self.json("clusters", self.house, "-o", self.scratch / "house.lodg")
+        for file in (self.scratch / "tiles" / "tileset.json", self.scratch / "house.lodg"):
+            words = ("render", file, "--size", "160x120", "-o", self.scratch / "a.png")
+            usual, fine, coarse = (self.json(*words, *limit)["triangles"]
+                                   for limit in ((), ("--error-px", 1), ("--error-px", 8)))
+            self.assertEqual(usual, fine, file)
+            self.assertLess(coarse, fine, file)
+
+    def test_render_refuses_an_error_where_nothing_is_chosen_by_it(self):
+        for file in (self.house, self.model):
+            words = ("render", file, "--error-px", 1, "-o", self.scratch / "a.png")
+            self.assertIn(f"{file}: --error-px needs a .lodg file", self.fails(1, *words))
+        missing = self.scratch / "missing.obj"
+        self.assertIn("no such file", self.fails(2, "render", missing, "--error-px", 1, "-o", self.scratch / "a.png"))
+
     def test_render_times_a_sheet(self):
         found = self.json("render", self.model, "--sheet", 2, "--size", "80x60", "-o", self.scratch / "sheet.png")
         self.assertGreater(found["frame_seconds"], 0)
