@@ -104,7 +104,7 @@ struct OutcropTile {
   double error_m = 0.0;  ///< the larger of measured deviation and texel size; 0 at level 0; parents have more
   double texel_m = 0.0;  ///< mean size of its texels on the rock; 0 if untextured
   double gap_m = 0.0;    ///< its border lies no farther than this from that of a finer neighbour; 0 at level 0
-  double skirt_m = 0.0;  ///< depth of its skirt: the gap of the tile two levels up
+  double skirt_m = 0.0;  ///< depth of its skirt: how far it and the tile two levels up deviate in depth, within its gap
 };
 
 /// Materials of skirts are copies of those of the surface under this name.
@@ -198,7 +198,7 @@ class OutcropPyramid {
   struct BorderPoint {
     glm::vec3 position{0.0F};
     glm::vec3 normal{0.0F};  // over the faces of all tiles there
-    bool on_rim = false;     // of the outcrop itself
+    float rim_m = 0.0F;      // distance from the rim of the outcrop itself, or of a hole in it
   };
   struct LevelMesh {
     VertexArrays vertices;

@@ -34,14 +34,20 @@ class TriangleBvh {
 
   // Nearest triangle; `hint` is the slot of a triangle that is likely near. Only ties depend on the hint.
   [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t hint = none) const noexcept {
+    return nearest_beyond(p, 0.0, hint);
+  }
+
+  // The same, or any triangle that lies within `enough`, if there is one: which, depends on the hint.
+  [[nodiscard]] Nearest nearest_beyond(const glm::dvec3& p, double enough, std::uint32_t hint = none) const noexcept {
     Nearest best;
     if (hint != none) consider(p, hint, best);
-    if (!nodes_.empty())
+    const double squared_enough = enough * enough;
+    if (!nodes_.empty() && best.squared_distance > squared_enough)
       descend(
           p, [&] { return best.squared_distance; },
           [&](std::uint32_t slot) {
             consider(p, slot, best);
-            return true;
+            return best.squared_distance > squared_enough;
           });
     return best;
   }

@@ -19,7 +19,7 @@ struct BorderEdge {
 struct Borders {
   std::vector<BorderEdge> edges;           // ascending by (a, b)
   std::uint32_t open_edges = 0;            // used by one face
-  std::vector<std::uint32_t> open_points;  // their ends, some more than once
+  std::vector<std::uint32_t> open_points;  // the two ends of each
 };
 
 // `owner_of_face` is per face. Faces with two corners on one point are left out. O(n log n).

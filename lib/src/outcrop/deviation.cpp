@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Based on: Cignoni, Rocchini and Scopigno 1998, "Metro: measuring error on simplified surfaces" (two-sided, at the
-// vertices).
+// Based on: Cignoni, Rocchini and Scopigno 1998, "Metro: measuring error on simplified surfaces" (two-sided, at
+// vertices, middles of edges and centres of faces).
 #include "outcrop/deviation.h"
 
 #include <algorithm>
@@ -14,14 +14,15 @@
 namespace lodestone::outcrop {
 namespace {
 
-template <class Point>
-std::vector<double> distances(const TriangleBvh& surface, std::size_t count, const Context& context, Point point) {
-  constexpr std::size_t chunk = 4096;
-  std::vector<double> result(count);
-  parallel_chunks(count, chunk, context, [&](std::size_t begin, std::size_t end) {
+constexpr std::size_t chunk_size = 4096;
+
+std::vector<double> vertex_distances(const TriangleBvh& surface, const std::vector<glm::vec3>& positions,
+                                     const Context& context) {
+  std::vector<double> result(positions.size());
+  parallel_chunks(result.size(), chunk_size, context, [&](std::size_t begin, std::size_t end) {
     std::uint32_t hint = none;
     for (std::size_t i = begin; i < end; ++i) {
-      const TriangleBvh::Nearest nearest = surface.nearest(glm::dvec3{point(i)}, hint);
+      const TriangleBvh::Nearest nearest = surface.nearest(glm::dvec3{positions[i]}, hint);
       hint = nearest.slot;
       result[i] = std::sqrt(nearest.squared_distance);
     }
@@ -29,16 +30,53 @@ std::vector<double> distances(const TriangleBvh& surface, std::size_t count, con
   return result;
 }
 
+bool is_solid(const Tiled& tiled, VertexId v) {
+  return tiled.solid.empty() || tiled.solid[tiled.weld.point_of[v]] != 0;
+}
+
+// Has no width to be seen, or no area at all; what lies between its corners may be anywhere.
+bool is_needle(const glm::dvec3& u, const glm::dvec3& v) {
+  constexpr double width_of_length = 1e-6;
+  const double squared_length = std::max({glm::dot(u, u), glm::dot(v, v), glm::dot(u - v, u - v)});
+  return glm::length(glm::cross(u, v)) <= width_of_length * squared_length;
+}
+
+// Large triangles lie farthest off between their corners: at the middles of edges and the centre. Returns per face the
+// largest distance there, or at most `enough` of its tile.
+std::vector<double> distances_between_corners(const Tiled& from, const TriangleBvh& to,
+                                              const std::vector<TileDeviation>& enough, const Context& context) {
+  std::vector<double> result(from.tile_of_face.size(), 0.0);
+  parallel_chunks(result.size(), chunk_size, context, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t hint = none;
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto at = [&](std::size_t k) { return glm::dvec3{from.positions[from.indices[3 * f + k]]}; };
+      const glm::dvec3 p[3] = {at(0), at(1), at(2)};
+      if (is_needle(p[1] - p[0], p[2] - p[0])) continue;
+      for (const glm::dvec3& q :
+           {(p[0] + p[1]) / 2.0, (p[1] + p[2]) / 2.0, (p[2] + p[0]) / 2.0, (p[0] + p[1] + p[2]) / 3.0}) {
+        const TriangleBvh::Nearest nearest = to.nearest_beyond(q, enough[from.tile_of_face[f]].surface_m, hint);
+        hint = nearest.slot;
+        result[f] = std::max(result[f], std::sqrt(nearest.squared_distance));
+      }
+    }
+  });
+  return result;
+}
+
 void raise_surface(std::vector<TileDeviation>& per_tile, const Tiled& from, const TriangleBvh& to,
                    const Context& context) {
-  const std::vector<double> distance =
-      distances(to, from.positions.size(), context, [&](std::size_t i) { return from.positions[i]; });
+  const std::vector<double> at = vertex_distances(to, from.positions, context);
   for (std::size_t f = 0; f < from.tile_of_face.size(); ++f) {
     double& most = per_tile[from.tile_of_face[f]].surface_m;
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexId v = from.indices[3 * f + k];
-      if (from.solid.empty() || from.solid[from.weld.point_of[v]] != 0) most = std::max(most, distance[v]);
+      if (is_solid(from, v)) most = std::max(most, at[v]);
     }
+  }
+  const std::vector<double> between = distances_between_corners(from, to, per_tile, context);
+  for (std::size_t f = 0; f < from.tile_of_face.size(); ++f) {
+    double& most = per_tile[from.tile_of_face[f]].surface_m;
+    most = std::max(most, between[f]);
   }
 }
 
@@ -91,7 +129,7 @@ std::vector<double> extents_of_chains(const Tiled& tiled) {
 // as that around the only face of a photograph, the nearest may be anywhere; what gapes there is no wider than the
 // chain.
 void raise_borders(std::vector<TileDeviation>& per_tile, const Tiled& from, const Tiled& to, const Context& context) {
-  if (from.borders.empty() || to.borders.empty()) return;
+  if (from.borders.empty()) return;
   // Both ends and the middle: between two ends the other chain may turn away.
   constexpr std::size_t samples = 3;
   constexpr std::size_t chunk = 256;
@@ -129,7 +167,8 @@ void raise_borders(std::vector<TileDeviation>& per_tile, const Tiled& from, cons
 std::vector<TileDeviation> Deviation::measure(const Tiled& source, const Tiled& level, std::uint32_t tiles,
                                               const Context& context) const {
   std::vector<TileDeviation> result(tiles);
-  raise_surface(result, source, TriangleBvh{level.positions, level.indices}, context);
+  const TriangleBvh level_surface{level.positions, level.indices};
+  raise_surface(result, source, level_surface, context);
   raise_surface(result, level, source_, context);
   raise_borders(result, source, level, context);
   raise_borders(result, level, source, context);

@@ -3,6 +3,7 @@
 #include "outcrop/measure.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mesh/weld.h"
 
@@ -13,6 +14,18 @@ namespace {
 void keep_solid(std::vector<outcrop::BorderEdge>& edges, const std::vector<std::uint8_t>& solid) {
   if (solid.empty()) return;
   std::erase_if(edges, [&](const outcrop::BorderEdge& edge) { return solid[edge.a] == 0 || solid[edge.b] == 0; });
+}
+
+// Between each two of the points that follow each other, as triangles without area.
+TriangleBvh segments_between(const std::vector<glm::vec3>& positions, const Weld& weld,
+                             const std::vector<std::uint32_t>& ends) {
+  std::vector<VertexId> indices;
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    const VertexId a = weld.first_vertex[ends[i]];
+    const VertexId b = weld.first_vertex[ends[i + 1]];
+    indices.insert(indices.end(), {a, b, b});
+  }
+  return {positions, indices};
 }
 
 }  // namespace
@@ -47,8 +60,9 @@ void LevelMeasurer::keep_borders(const Weld& weld, const outcrop::Borders& borde
       level.border_points.push_back({.position = level.vertices.positions[weld.first_vertex[point]]});
     }
   }
-  for (const std::uint32_t point : borders.open_points) {
-    if (place[point] != none) level.border_points[place[point]].on_rim = true;
+  const TriangleBvh rim = segments_between(level.vertices.positions, weld, borders.open_points);
+  for (OutcropPyramid::BorderPoint& point : level.border_points) {
+    point.rim_m = static_cast<float>(std::sqrt(rim.nearest(glm::dvec3{point.position}).squared_distance));
   }
   for (std::size_t c = 0; c < level.indices.size(); ++c) {
     const std::uint32_t at = place[weld.point_of[level.indices[c]]];

@@ -305,12 +305,15 @@ void OutcropBuilder::settle_errors() {
     OutcropTile& tile = out_->tiles_[i];
     const outcrop::TileDeviation& deviation = measurer_.deviations()[i - here];
     double below_m = 0.0;
-    tile.error_m = tile.level == 0 ? 0.0 : std::max(deviation.surface_m, tile.texel_m);
+    // However large its texels, nothing lies farther away than the tile reaches.
+    const double texel_m = std::min(tile.texel_m, tile.bounds.diagonal_m());
+    tile.error_m = tile.level == 0 ? 0.0 : std::max(deviation.surface_m, texel_m);
     for (const std::uint32_t child : tile.children) {
       tile.error_m = std::max(tile.error_m, out_->tiles_[child].error_m * error_step);
       below_m = std::max(below_m, borders_below_m_[child - below]);
     }
     tile.gap_m = border_slack * (deviation.border_m + below_m);
+    tile.skirt_m = deviation.surface_m;  // until widen_skirts()
     if (tile.level > 0) tile.error_m = std::max(tile.error_m, tile.gap_m);
     borders_m.push_back(std::max(below_m, deviation.border_m));
   }
@@ -318,19 +321,26 @@ void OutcropBuilder::settle_errors() {
 }
 
 // A tile may meet neighbours that are coarser than itself: its skirt is deep enough for those up to two levels up.
+// Their chains lie as far off as the gap, but most of that sideways: in depth no farther than both surfaces are off. A
+// skirt is not so flat either that it would show through the rock beside it.
 void OutcropBuilder::widen_skirts() {
+  constexpr int levels_up = 2;
+  constexpr double flattest = 0.25;
+  constexpr double longest = 2.3;  // a strip's diagonal at a corner, at most
   std::vector<OutcropTile>& tiles = out_->tiles_;
   for (OutcropTile& tile : tiles) {  // children stand before their parents
-    if (tile.parent != none) tiles[tile.parent].gap_m = std::max(tiles[tile.parent].gap_m, tile.gap_m);
+    if (tile.parent == none) continue;
+    OutcropTile& above = tiles[tile.parent];
+    above.gap_m = std::max(above.gap_m, tile.gap_m);
+    above.skirt_m = std::max(above.skirt_m, tile.skirt_m);
   }
-  constexpr int levels_up = 2;
-  constexpr double longest = 2.3;  // a strip's diagonal at a corner, at most
   for (OutcropTile& tile : tiles) {
     const OutcropTile* above = &tile;
     for (int i = 0; i < levels_up && above->parent != none; ++i) above = &tiles[above->parent];
-    tile.skirt_m = above->gap_m;
-    tile.bounds.add(tile.bounds.min - longest * tile.skirt_m);
-    tile.bounds.add(tile.bounds.max + longest * tile.skirt_m);
+    const double deep_m = border_slack * (above->skirt_m + tile.skirt_m);
+    tile.skirt_m = std::clamp(deep_m, flattest * above->gap_m, above->gap_m);
+    tile.bounds.add(tile.bounds.min - longest * std::max(tile.gap_m, tile.skirt_m));
+    tile.bounds.add(tile.bounds.max + longest * std::max(tile.gap_m, tile.skirt_m));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <lodestone/outcrop.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
 #include "mesh/vertex_copy.h"
@@ -27,7 +26,6 @@ class SkirtMaker {
 
   void make() {
     for_each_edge([&](FaceId f, VertexId a, VertexId b) { measure(f, a, b); });
-    find_rim();
     for_each_edge([&](FaceId f, VertexId a, VertexId b) { sew(f, a, b); });
   }
 
@@ -66,14 +64,6 @@ class SkirtMaker {
     return at != level_.border_points.end() && at->position == position ? &*at : nullptr;
   }
 
-  void find_rim() {
-    for (std::uint32_t point = 0; point < ends_.size(); ++point) {
-      if (ends_[point].edges == 0) continue;
-      const auto* at = border_point(mesh_.vertices.positions[weld_.first_vertex[point]]);
-      if (at != nullptr && at->on_rim) rim_.push_back(at->position);
-    }
-  }
-
   // Towards the rim of the outcrop itself a skirt becomes smaller, so that it does not stick out beyond.
   [[nodiscard]] glm::vec3 shift_of(VertexId v) const {
     const glm::vec3& position = mesh_.vertices.positions[v];
@@ -81,8 +71,7 @@ class SkirtMaker {
     const double normal_size = at != nullptr ? double{glm::length(at->normal)} : 0.0;
     if (!(normal_size > 0.0)) return glm::vec3{0.0F};
     constexpr double share_of_way = 0.5;
-    double most_m = std::numeric_limits<double>::infinity();
-    for (const glm::vec3& p : rim_) most_m = std::min(most_m, share_of_way * double{glm::distance(p, position)});
+    const double most_m = share_of_way * double{at->rim_m};
     const double gap_m = std::min(info_.gap_m, most_m);
     const double depth_m = std::min(info_.skirt_m, most_m);
     const glm::dvec3 normal = glm::dvec3{at->normal} / normal_size;
@@ -123,8 +112,7 @@ class SkirtMaker {
   const std::uint8_t* borders_;  // of the tile's first face
   FaceId faces_;
   Weld weld_;
-  std::vector<End> ends_;       // per point
-  std::vector<glm::vec3> rim_;  // ends of the border on the outcrop's own
+  std::vector<End> ends_;  // per point
   std::map<VertexId, VertexId> outer_;
   std::map<MaterialId, MaterialId> materials_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Between levels: how far a tile's border may gape beside a neighbour of another level.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -8,6 +10,8 @@
 
 #include "fixture.h"
 #include "geometry/bvh.h"
+#include "mesh/weld.h"
+#include "outcrop/borders.h"
 
 namespace lodestone::test {
 
@@ -39,6 +43,39 @@ TEST_CASE("Beside a neighbour one level coarser a border gapes by no more than t
     }
   }
   CHECK(tried > 100);
+}
+
+TEST_CASE("Behind the rim of an open wall skirts are no deeper than half the way to it, whatever errors are told") {
+  Mesh mesh = small_cliff();  // in strips of two photographs by turns, so that chains between tiles vanish
+  for (FaceId f = 0; f < mesh.triangle_count(); ++f) {
+    const float x = mesh.vertices.positions[mesh.indices[3 * std::size_t{f}]].x;
+    mesh.face_materials[f] = static_cast<MaterialId>(static_cast<int>(std::floor(x)) & 1);
+  }
+  const Weld weld = weld_by_position(mesh.vertices.positions);
+  const std::vector<std::uint32_t> one_tile(mesh.triangle_count(), 0);
+  std::vector<glm::dvec3> rim;
+  for (const std::uint32_t point : outcrop::find_borders(mesh.indices, weld, one_tile).open_points) {
+    rim.emplace_back(mesh.vertices.positions[weld.first_vertex[point]]);
+  }
+  REQUIRE(rim.size() > 100);
+  const auto pyramid = pyramid_of(mesh, small_tiles());
+  double deepest_m = 0.0;
+  for (std::uint32_t i = 0; i < pyramid->levels().front().tiles; ++i) {
+    Mesh tile = pyramid->content(i).mesh;
+    pyramid->add_skirt(i, tile);
+    const auto at = [&](FaceId f, std::size_t k) {
+      return tile.origin - mesh.origin + glm::dvec3{tile.vertices.positions[tile.indices[3 * std::size_t{f} + k]]};
+    };
+    // Skirts are pairs of triangles; the first has the border's b and a, then what hangs below a.
+    for (FaceId f = surface_triangle_count(tile); f < tile.triangle_count(); f += 2) {
+      double from_rim_m = std::numeric_limits<double>::infinity();
+      for (const glm::dvec3& r : rim) from_rim_m = std::min(from_rim_m, glm::distance(r, at(f, 1)));
+      const double deep_m = glm::distance(at(f, 1), at(f, 2));
+      CHECK(deep_m <= 0.5 * from_rim_m + 1e-4);
+      deepest_m = std::max(deepest_m, deep_m);
+    }
+  }
+  CHECK(deepest_m > 0.1);
 }
 
 }  // namespace lodestone::test
