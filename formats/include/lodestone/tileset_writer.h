@@ -25,7 +25,7 @@
 namespace lodestone {
 
 enum class TileImage : std::uint8_t {
-  Jpeg,
+  Jpeg,  ///< PNG where a photograph has alpha
   Png,   ///< lossless
   Webp,  ///< a third smaller than JPEG and slower to make; clients must know EXT_texture_webp, OpenSceneGraph does not
 };

@@ -106,7 +106,7 @@ void read_mtl(const Input& input, const std::filesystem::path& model_folder, con
       material->place = lines.place();
       material->texture = known_from(model_folder, input, texture_name(words, warnings, material->place));
     } else if (word_is(key, "map_d")) {
-      material->has_mask = true;
+      material->mask = known_from(model_folder, input, texture_name(words, warnings, lines.place()));
     }
   }
   if (!lines.status()) warnings.add("a material library was not read to its end", input.name());

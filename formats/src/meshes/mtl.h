@@ -11,9 +11,9 @@ namespace lodestone {
 
 struct MtlMaterial {
   glm::vec4 color{1.0F};
-  std::string texture;    // map_Kd, as the model's folder knows it
-  std::string place;      // of its line
-  bool has_mask = false;  // map_d
+  std::string texture;  // map_Kd, as the model's folder knows it
+  std::string place;    // of its line
+  std::string mask;     // map_d, in the same way
 };
 using MtlLibrary = std::map<std::string, MtlMaterial, std::less<>>;
 

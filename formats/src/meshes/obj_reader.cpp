@@ -359,7 +359,11 @@ void ObjReader::finish_materials() {
     material.base_color = found->second.color;
     if (found->second.texture.empty()) continue;
     material.texture = add_texture_file(mesh_, found->second.texture, input_, options_, warnings_, found->second.place);
-    if (found->second.has_mask) material.alpha_cutoff = 0.5F;
+    if (found->second.mask.empty()) continue;
+    material.alpha_cutoff = 0.5F;
+    if (found->second.mask == found->second.texture) continue;
+    warnings_.add("a mask that is not the texture itself is not used, only the texture's own alpha",
+                  found->second.place);
   }
 }
 

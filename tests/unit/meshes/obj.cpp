@@ -237,6 +237,24 @@ TEST_CASE("obj: what is said of a texture that is missing, or is a folder, names
   CHECK(read.warnings()[1].where == library + ", line 5");
 }
 
+TEST_CASE("obj: a texture's alpha makes holes where the library asks for it, a mask of its own is told of") {
+  const auto folder = test::scratch_folder("obj_masks");
+  REQUIRE(write_image(Image{1, 1, 4, {1, 2, 3, 0}}, folder / "leaf.png").ok());
+  REQUIRE(write_image(Image{1, 1, 1, {0}}, folder / "mask.png").ok());
+  test::write_text(folder / "a.mtl",
+                   "newmtl plain\nmap_Kd leaf.png\nnewmtl holes\nmap_d leaf.png\nmap_Kd leaf.png\n"
+                   "newmtl other\nmap_Kd leaf.png\nmap_d mask.png\n");
+  const auto read = read_text(with_square("mtllib a.mtl\nusemtl plain\nf 1 2 3\nusemtl holes\nf 1 2 3\n"
+                                          "usemtl other\nf 1 2 3\n"),
+                              (folder / "a.obj").string(), {}, folder);
+  REQUIRE(read.ok());
+  CHECK(read->mesh.materials[0].alpha_cutoff == 0.0F);
+  CHECK(read->mesh.materials[1].alpha_cutoff == 0.5F);
+  REQUIRE(read.warnings().size() == 1);
+  CHECK(warned(read, "a mask that is not the texture itself is not used"));
+  CHECK(read.warnings().front().where == (folder / "a.mtl").string() + ", line 7");
+}
+
 TEST_CASE("obj: a texture that is no image is a warning") {
   const auto folder = test::scratch_folder("obj_bad_texture");
   test::write_text(folder / "a.mtl", "newmtl m\nmap_Kd a.jpg\nnewmtl n\nmap_Kd b.jpg\n");

@@ -186,6 +186,28 @@ TEST_CASE("Grey, coloured and transparent photographs on one tile keep their own
   check_shown(mesh, folder, {Color{100, 100, 100}, white, blue, pale});
 }
 
+TEST_CASE("A photograph's alpha is in its tiles, and makes holes where the material says so") {
+  const fs::path folder = scratch_folder("photographs_alpha");
+  Image leaf{16, 16, 4, std::vector<std::uint8_t>(16 * 16 * 4, 90)};
+  for (std::uint32_t y = 0; y < 16; ++y) leaf.at(15, y)[3] = 0;
+  for (const float cutoff : {0.0F, 0.5F}) {
+    CAPTURE(cutoff);
+    Mesh mesh = grid_with({.name = "leaf", .image = std::make_shared<const Image>(leaf)});
+    mesh.materials.front().alpha_cutoff = cutoff;
+    REQUIRE(write_outcrop(mesh, folder, {.pyramid = {.tile_bytes = 1'000'000}}));
+    const auto pyramid = TilePyramid::open(folder / "tileset.json");
+    REQUIRE(pyramid);
+    const auto tile = (*pyramid)->load(0);
+    REQUIRE(tile);
+    CHECK(tile->materials.front().alpha_cutoff == cutoff);
+    REQUIRE(tile->textures.size() == 1);
+    const Image& shown = *tile->textures.front().image;
+    REQUIRE(shown.channels == 4);
+    CHECK(shown.at(0, 0)[3] == 90);
+    CHECK(shown.at(shown.width - 1, 0)[3] == 0);
+  }
+}
+
 TEST_CASE("A photograph that is missing, empty, cut off or no image leaves its faces plain, and is told by name") {
   const fs::path folder = scratch_folder("photographs_damaged");
   const auto jpeg = encode_jpeg(quadrants(64, 64), 95);
