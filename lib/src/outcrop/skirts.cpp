@@ -70,7 +70,7 @@ class SkirtMaker {
     const auto* at = border_point(position);
     const double normal_size = at != nullptr ? double{glm::length(at->normal)} : 0.0;
     if (!(normal_size > 0.0)) return glm::vec3{0.0F};
-    constexpr double share_of_way = 0.5;
+    constexpr double share_of_way = 0.25;
     const double most_m = share_of_way * double{at->rim_m};
     const double gap_m = std::min(info_.gap_m, most_m);
     const double depth_m = std::min(info_.skirt_m, most_m);
