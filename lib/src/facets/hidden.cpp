@@ -18,6 +18,7 @@ constexpr int direction_count = 32;
 constexpr double most_pixel_m = 0.15;  // in larger pictures bars and their glass are one
 constexpr std::size_t most_faces = 100'000;
 constexpr double looked_again_share = 0.6;  // of the faces that were left
+constexpr double furnished_share = 0.55;    // hidden, of the faces
 constexpr double most_m = 0.2;              // from what is seen
 constexpr double same_plane_cosine = 0.999;
 constexpr std::uint32_t seen_group = 0;
@@ -210,7 +211,9 @@ std::optional<Scrap> HiddenFinder::measure(FaceId f, double price) const {
 }
 
 std::vector<Scrap> HiddenFinder::find(double price) {
-  if (price < least_price || !look()) return {};
+  if (price < least_price || furnished_ || !look()) return {};
+  furnished_ = static_cast<double>(groups_[hidden_group].size()) > furnished_share * static_cast<double>(live_.size());
+  if (furnished_) return {};
   around_.update(groups_, group_of_);
   std::vector<Scrap> found;
   for (const FaceId f : groups_[hidden_group]) {

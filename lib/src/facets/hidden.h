@@ -19,8 +19,9 @@ class HiddenFinder {
  public:
   explicit HiddenFinder(const FacetMesh& mesh) : mesh_(mesh), around_(mesh), group_of_(mesh.faces.size(), none) {}
 
-  // Single faces that cost at most `price`, the cheapest first; their support is seen. Looks only where a quarter of
-  // the faces has gone since it looked last, and only at what is small enough for its pictures.
+  // Single faces that cost at most `price`, the cheapest first; their support is seen. Looks only where two fifths of
+  // the faces has gone since it looked last, and only at what is small enough for its pictures. Never where most of it
+  // is hidden: then rooms lie behind the walls, and what closes the windows of a wall hangs on its inner side.
   [[nodiscard]] std::vector<Scrap> find(double price);
 
  private:
@@ -33,6 +34,7 @@ class HiddenFinder {
   std::vector<std::uint32_t> group_of_;  // per face; none if it is gone
   FaceGroups groups_;                    // seen and hidden
   std::vector<FaceId> live_;
+  bool furnished_ = false;
   double looked_at_ = std::numeric_limits<double>::infinity();  // so many faces, the last time
 };
 
