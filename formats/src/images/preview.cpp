@@ -38,7 +38,7 @@ Image averaged(const Image& image, std::uint32_t width, std::uint32_t height) {
 
 Result<Bytes> encode_preview(ByteSpan bytes, const std::string& source, std::uint32_t longest) {
   constexpr int quality = 60;
-  constexpr std::uint64_t max_pixels = 1ULL << 28;
+  const std::uint64_t max_pixels = ReadOptions{}.max_texture_pixels;
   auto image = image_mime_type(bytes) == "image/jpeg" ? decode_jpeg(bytes, max_pixels, longest)
                                                       : decode_image(bytes, source, max_pixels);
   if (!image) return image.error();

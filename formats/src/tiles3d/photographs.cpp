@@ -13,8 +13,7 @@ constexpr std::uint64_t most_file_bytes = 1ULL << 31;
 constexpr std::size_t head_bytes = 1U << 18;  // where a header is looked for first
 
 Result<Photograph> from_head(ByteSpan bytes, std::uint64_t file_bytes, const std::string& name) {
-  constexpr std::uint64_t most_pixels = 1ULL << 28;  // as when it is decoded
-  const auto head = image_head(bytes, file_bytes, name, most_pixels);
+  const auto head = image_head(bytes, file_bytes, name, ReadOptions{}.max_texture_pixels);
   if (!head) return head.error();
   return Photograph{{head->size.x, head->size.y, file_bytes}, head->decode_bytes};
 }

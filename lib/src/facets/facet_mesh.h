@@ -23,6 +23,10 @@ struct Face {
   std::uint32_t surface = none;
   bool live = false;
   glm::dvec3 normal{0.0};  // unit, of the plane that the face is to keep
+
+  [[nodiscard]] bool has_point(std::uint32_t p) const noexcept {
+    return point[0] == p || point[1] == p || point[2] == p;
+  }
 };
 
 // One corner point goes to another place, and becomes one with the point there if `onto` names it. Where points that

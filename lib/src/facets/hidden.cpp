@@ -129,10 +129,6 @@ class Picture {
   std::vector<FaceId> nearest_;
 };
 
-bool has_point(const Face& face, std::uint32_t p) {
-  return face.point[0] == p || face.point[1] == p || face.point[2] == p;
-}
-
 }  // namespace
 
 // Where one face of a plane is seen, all are that hang together with it and are of one material: a wall does not lose
@@ -150,7 +146,7 @@ void HiddenFinder::spread(std::vector<std::uint8_t>& seen) const {
     const auto& p = mesh_.faces[f].point;
     for (std::size_t k = 0; k < 3; ++k) {
       for (const FaceId g : mesh_.faces_of[p[k]]) {
-        if (g > f && has_point(mesh_.faces[g], p[k == 2 ? 0 : k + 1]) && joined(f, g)) sets.join(f, g);
+        if (g > f && mesh_.faces[g].has_point(p[k == 2 ? 0 : k + 1]) && joined(f, g)) sets.join(f, g);
       }
     }
   }

@@ -104,10 +104,6 @@ bool has_edge(const Face& face, std::uint32_t a, std::uint32_t b) {
   return (p[0] == a && p[1] == b) || (p[1] == a && p[2] == b) || (p[2] == a && p[0] == b);
 }
 
-bool has_point(const Face& face, std::uint32_t a) {
-  return face.point[0] == a || face.point[1] == a || face.point[2] == a;
-}
-
 bool is_side(const Opening& opening, std::uint32_t a, std::uint32_t b) {
   for (std::size_t i = 0; i < opening.loop.size(); ++i) {
     if (opening.loop[i] == a && opening.loop[(i + 1) % opening.loop.size()] == b) return true;
@@ -252,7 +248,7 @@ std::vector<FaceId> sides_of(const FacetMesh& mesh, const Opening& opening, cons
     const Face face = mesh.faces[sides[i]];
     for (std::size_t k = 0; k < 3; ++k) {
       for (const FaceId g : mesh.faces_of[face.point[k]]) {
-        if (!has_point(mesh.faces[g], face.point[k == 2 ? 0 : k + 1]) || !contains(content, g) ||
+        if (!mesh.faces[g].has_point(face.point[k == 2 ? 0 : k + 1]) || !contains(content, g) ||
             std::find(sides.begin(), sides.end(), g) != sides.end() ||
             !lies_in(mesh, mesh.faces[g], face.normal, glm::dot(face.normal, mesh.at(face.point[0])))) {
           continue;
@@ -322,7 +318,7 @@ std::optional<OpeningJob> Openings::flatten(const Opening& opening, double price
       const std::uint32_t b0 = face.point[k == 2 ? 0 : k + 1];
       if (is_edge_of(opening, a0, b0)) continue;
       for (const FaceId other : mesh_.faces_of[a0]) {
-        if (stood_in_[other] == look_ || !has_point(mesh_.faces[other], b0)) continue;
+        if (stood_in_[other] == look_ || !mesh_.faces[other].has_point(b0)) continue;
         if (closed_ || !is_behind(mesh_, mesh_.faces[other], plane)) return std::nullopt;
       }
     }

@@ -16,10 +16,6 @@ constexpr double same_plane_cosine = 0.999;
 constexpr double look_ahead = 16.0;  // times the price: so far costs are found, so that not each price asks anew
 constexpr double behind_m = 0.05;    // nothing so near: where it goes a hole is left
 
-bool has_point(const Face& face, std::uint32_t p) {
-  return face.point[0] == p || face.point[1] == p || face.point[2] == p;
-}
-
 }  // namespace
 
 // Across an edge: a frame does not belong to the glass that it stands on, a pane to the wall that it lies in.
@@ -38,7 +34,7 @@ void ScrapFinder::group() {
       FaceId other = none;
       std::uint32_t count = 0;
       for (const FaceId g : mesh_.faces_of[p[k]]) {
-        if (g == f || !has_point(mesh_.faces[g], b)) continue;
+        if (g == f || !mesh_.faces[g].has_point(b)) continue;
         other = g;
         ++count;
       }

@@ -82,17 +82,10 @@ void raise_surface(std::vector<TileDeviation>& per_tile, const Tiled& from, cons
 
 glm::vec3 place(const Tiled& tiled, std::uint32_t point) { return tiled.positions[tiled.weld.first_vertex[point]]; }
 
-// Segments as triangles without area.
 TriangleBvh chains_of(const Tiled& tiled) {
-  std::vector<glm::vec3> positions;
-  std::vector<VertexId> indices;
-  for (const BorderEdge& edge : tiled.borders) {
-    const VertexId a = static_cast<VertexId>(positions.size());
-    positions.push_back(place(tiled, edge.a));
-    positions.push_back(place(tiled, edge.b));
-    indices.insert(indices.end(), {a, a + 1, a + 1});
-  }
-  return {positions, indices};
+  std::vector<std::uint32_t> ends;
+  for (const BorderEdge& edge : tiled.borders) ends.insert(ends.end(), {edge.a, edge.b});
+  return segments_between(tiled.positions, tiled.weld, ends);
 }
 
 // Per edge the extent of the chain it belongs to: of what is connected and lies between the same two tiles.
@@ -163,6 +156,17 @@ void raise_borders(std::vector<TileDeviation>& per_tile, const Tiled& from, cons
 }
 
 }  // namespace
+
+TriangleBvh segments_between(const std::vector<glm::vec3>& positions, const Weld& weld,
+                             const std::vector<std::uint32_t>& ends) {
+  std::vector<VertexId> indices;
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    const VertexId a = weld.first_vertex[ends[i]];
+    const VertexId b = weld.first_vertex[ends[i + 1]];
+    indices.insert(indices.end(), {a, b, b});
+  }
+  return {positions, indices};
+}
 
 std::vector<TileDeviation> Deviation::measure(const Tiled& source, const Tiled& level, std::uint32_t tiles,
                                               const Context& context) const {

@@ -29,6 +29,10 @@ struct TileDeviation {
   double border_m = 0.0;
 };
 
+// Between each two of the corner points that follow each other, as triangles without area.
+[[nodiscard]] TriangleBvh segments_between(const std::vector<glm::vec3>& positions, const Weld& weld,
+                                           const std::vector<std::uint32_t>& ends);
+
 class Deviation {
  public:
   Deviation(const std::vector<glm::vec3>& positions, const std::vector<VertexId>& indices)

@@ -16,18 +16,6 @@ void keep_solid(std::vector<outcrop::BorderEdge>& edges, const std::vector<std::
   std::erase_if(edges, [&](const outcrop::BorderEdge& edge) { return solid[edge.a] == 0 || solid[edge.b] == 0; });
 }
 
-// Between each two of the points that follow each other, as triangles without area.
-TriangleBvh segments_between(const std::vector<glm::vec3>& positions, const Weld& weld,
-                             const std::vector<std::uint32_t>& ends) {
-  std::vector<VertexId> indices;
-  for (std::size_t i = 0; i < ends.size(); i += 2) {
-    const VertexId a = weld.first_vertex[ends[i]];
-    const VertexId b = weld.first_vertex[ends[i + 1]];
-    indices.insert(indices.end(), {a, b, b});
-  }
-  return {positions, indices};
-}
-
 }  // namespace
 
 void LevelMeasurer::find_source_borders() {
@@ -60,7 +48,7 @@ void LevelMeasurer::keep_borders(const Weld& weld, const outcrop::Borders& borde
       level.border_points.push_back({.position = level.vertices.positions[weld.first_vertex[point]]});
     }
   }
-  const TriangleBvh rim = segments_between(level.vertices.positions, weld, borders.open_points);
+  const TriangleBvh rim = outcrop::segments_between(level.vertices.positions, weld, borders.open_points);
   for (OutcropPyramid::BorderPoint& point : level.border_points) {
     point.rim_m = static_cast<float>(std::sqrt(rim.nearest(glm::dvec3{point.position}).squared_distance));
   }
